@@ -1,0 +1,135 @@
+//! Where a polynomial keeps its sign in a simplex (thesis 4.4).
+
+use crate::bernstein::for_each_index;
+use csg::Ternary;
+
+/// How the range of a polynomial in a simplex is bounded.
+#[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
+pub enum Criterion {
+    /// By its smallest and largest Bernstein coefficient (thesis 4.4.2).
+    #[default]
+    Bezier,
+    /// The same, sharpened where one coefficient alone spoils the sign (Rivlin, thesis 4.4.3).
+    Rivlin,
+}
+
+/// Classifies against `p ≤ 0`: `In` when p < 0 is proved in the whole simplex, `Out` when p > 0
+/// is; `error` bounds the absolute error of the coefficients.
+#[must_use]
+pub(crate) fn classify(
+    criterion: Criterion,
+    degree: usize,
+    coefficients: &[f64],
+    error: f64,
+) -> Ternary {
+    let (low, high) = match degree {
+        1 => range::<4>(coefficients),
+        2 => range::<10>(coefficients),
+        3 => range::<20>(coefficients),
+        4 => range::<35>(coefficients),
+        _ => coefficients
+            .iter()
+            .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), c| {
+                (low.min(*c), high.max(*c))
+            }),
+    };
+    if low > error {
+        return Ternary::Out;
+    }
+    if high < -error {
+        return Ternary::In;
+    }
+    if criterion == Criterion::Rivlin {
+        // The bound needs the sign at every coefficient but the extreme one.
+        if rivlin_lower_bound(degree, coefficients, 1.0) > error {
+            return Ternary::Out;
+        }
+        if rivlin_lower_bound(degree, coefficients, -1.0) > error {
+            return Ternary::In;
+        }
+    }
+    Ternary::Unknown
+}
+
+fn range<const N: usize>(coefficients: &[f64]) -> (f64, f64) {
+    let Some(c) = coefficients.first_chunk::<N>() else {
+        return (f64::NEG_INFINITY, f64::INFINITY);
+    };
+    let (mut low, mut high) = (c[0], c[0]);
+    for x in &c[1..] {
+        low = if *x < low { *x } else { low };
+        high = if *x > high { *x } else { high };
+    }
+    (low, high)
+}
+
+/// Lower bound of `sign · p`: with c_m the smallest coefficient and c_next the one after it,
+/// p ≥ c_next + (c_m − c_next)·B_m, and the Bernstein polynomial B_m is largest at m/n.
+fn rivlin_lower_bound(degree: usize, coefficients: &[f64], sign: f64) -> f64 {
+    let mut smallest = (f64::INFINITY, [0; 4]);
+    let mut next = f64::INFINITY;
+    for_each_index(degree, |at, exponents| {
+        let c = sign * coefficients[at];
+        if c < smallest.0 {
+            next = smallest.0;
+            smallest = (c, exponents);
+        } else if c < next {
+            next = c;
+        }
+    });
+    let (extreme, exponents) = smallest;
+    next + (extreme - next) * largest_bernstein(degree, exponents)
+}
+
+/// B_m(m/n) = n!/(i!j!k!l!) · Π (m_v/n)^m_v.
+fn largest_bernstein(degree: usize, exponents: [usize; 4]) -> f64 {
+    let mut value = 1.0;
+    let mut drawn = 0;
+    for exponent in exponents {
+        for t in 1..=exponent {
+            drawn += 1;
+            value *= f64::from(drawn) / t as f64 * exponent as f64 / degree as f64;
+        }
+    }
+    // Rounded upwards: at most four roundings a factor.
+    (value * (1.0 + 4.0 * degree as f64 * f64::EPSILON)).min(1.0)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::bernstein::{count, evaluate};
+    use proptest::prelude::*;
+
+    proptest! {
+        /// One suite for all criteria: never `Out` or `In` where a sample says otherwise.
+        #[test]
+        fn classification_is_sound(
+            rivlin: bool, degree in 1usize..6, shift in -1.0..1.0f64,
+            seed in proptest::collection::vec(-1.0..1.0f64, 56),
+            samples in proptest::collection::vec(proptest::array::uniform4(0.0..1.0f64), 20),
+        ) {
+            let criterion = if rivlin { Criterion::Rivlin } else { Criterion::Bezier };
+            let c: Vec<f64> = seed[..count(degree)].iter().map(|x| x + shift).collect();
+            let class = classify(criterion, degree, &c, 1e-12);
+            for b in samples {
+                let sum = b.iter().sum::<f64>().max(1e-9);
+                let value = evaluate(degree, &c, b.map(|x| x / sum));
+                match class {
+                    Ternary::In => prop_assert!(value < 0.0),
+                    Ternary::Out => prop_assert!(value > 0.0),
+                    Ternary::Unknown => {}
+                }
+            }
+        }
+    }
+
+    /// x² − 0.4·x·(1−x)·2 + (1−x)² over the edge v0–v3: the middle coefficient alone is negative.
+    #[test]
+    fn rivlin_decides_more_than_bezier() {
+        let mut c = vec![1.0; 10];
+        c[3] = -0.4;
+        assert_eq!(classify(Criterion::Bezier, 2, &c, 0.0), Ternary::Unknown);
+        assert_eq!(classify(Criterion::Rivlin, 2, &c, 0.0), Ternary::Out);
+    }
+}

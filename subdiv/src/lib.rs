@@ -1,0 +1,62 @@
+//! Adaptive simplicial subdivision: from a [`csg::Solid`] to its piecewise linear boundary.
+//!
+//! The domain cube is cut into six Kuhn simplices, each bisected again and again where the
+//! boundary is. Polynomials travel down as Bernstein–Bézier coefficients; their signs prove
+//! simplices empty or full and prune the formula. In each leaf every polynomial is replaced by
+//! its affine interpolant and the formula is evaluated exactly over the arrangement of a few
+//! planes (da Silva's thesis, chapters 3 and 4).
+//!
+//! Guaranteed for every input: the triangles form a closed, oriented 2-manifold without
+//! boundary; walls between different primitives survive at any thickness; the result depends on
+//! the solid and the settings only, not on the number of threads. With [`Rule::Tolerance`] the
+//! deviation of the affine interpolants is bounded in every leaf, except in those that the report
+//! lists as uncertified.
+//!
+//! Not guaranteed: that a component of one primitive is found which is smaller than the leaves
+//! at a fixed level, or that pieces of different uncertified leaves have the true topology.
+//!
+//! ```
+//! use csg::{ModelBuilder, Node, Shape, Solid};
+//! let mut model = ModelBuilder::new();
+//! let ball = model.add(Node::Shape(Shape::Ellipsoid(csg::Ellipsoid::new(glam::DVec3::ONE)?)));
+//! let solid = Solid::build(&model.finish(ball), None)?;
+//! let settings = subdiv::Settings::new(subdiv::Rule::Tolerance(0.01));
+//! let outcome = subdiv::convert(&solid, &settings, &())?;
+//! assert!(outcome.report.largest_deviation < Some(0.01));
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+#![expect(
+    clippy::cast_possible_truncation,
+    reason = "indices are 32 bits wide on purpose; the limit on cells keeps them in range"
+)]
+
+mod arrange;
+mod balance;
+mod bernstein;
+mod blossom;
+mod certify;
+mod classify;
+mod convert;
+mod error;
+mod extract;
+mod fragments;
+mod halving;
+mod harvest;
+mod lattice;
+mod leaf_formula;
+mod limits;
+mod mesh;
+mod polygon;
+mod predicates;
+mod prove;
+mod settings;
+mod sheets;
+mod simplex;
+mod walk;
+
+pub use classify::Criterion;
+pub use convert::{Outcome, convert};
+pub use error::Error;
+pub use fragments::{Fragments, Triangle, VertexKind};
+pub use lattice::MAX_LEVEL;
+pub use settings::{MAX_SPOTS, Observer, Reason, Report, Rule, Settings, Spot};

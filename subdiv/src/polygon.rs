@@ -1,0 +1,139 @@
+//! Triangulation of one planar piece of the boundary between given mesh vertices.
+
+use crate::arrange::NO_PLANE;
+use crate::leaf_formula::Label;
+use crate::mesh::MeshBuilder;
+use glam::{DVec2, DVec3};
+
+/// A corner of a piece: its mesh vertex and the planes of the leaf on which it lies.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub(crate) struct Corner {
+    /// Index in the mesh.
+    pub vertex: u32,
+    /// Planes as numbered by [`crate::arrange`].
+    pub planes: [u16; 3],
+}
+
+/// Clips ears, remembering the diagonals used in the leaf.
+#[derive(Debug, Default)]
+pub(crate) struct PieceTriangulator {
+    diagonals: Vec<[u32; 2]>,
+    flat: Vec<DVec2>,
+}
+
+impl PieceTriangulator {
+    /// Forgets the last leaf.
+    pub(crate) fn clear(&mut self) {
+        self.diagonals.clear();
+    }
+
+    /// Triangulates the piece with these corners, counter-clockwise seen from where its
+    /// primitive is positive; `ring` is used up.
+    ///
+    /// No diagonal joins two corners that share a plane besides the piece's own: they lie on a
+    /// common side, and the neighbour there may join them, too. When no ear is left, the rest is
+    /// a fan around a new inner vertex.
+    pub(crate) fn triangulate(
+        &mut self,
+        ring: &mut Vec<Corner>,
+        (own, primitive, label): (u16, u32, Label),
+        mesh: &mut MeshBuilder,
+    ) {
+        if ring.len() > 3 {
+            self.flatten(ring, mesh);
+        }
+        while ring.len() > 3 {
+            let Some(ear) = self.best_ear(ring, own) else {
+                fan(ring, primitive, label, mesh);
+                return;
+            };
+            let n = ring.len();
+            let (a, b, c) = (ring[(ear + n - 1) % n], ring[ear], ring[(ear + 1) % n]);
+            mesh.push_oriented([a.vertex, b.vertex, c.vertex], primitive, label);
+            self.diagonals.push(diagonal(a, c));
+            ring.remove(ear);
+            self.flat.remove(ear);
+        }
+        if let [a, b, c] = ring[..] {
+            mesh.push_oriented([a.vertex, b.vertex, c.vertex], primitive, label);
+        }
+    }
+
+    /// Projects the corners along the piece's dominant normal axis, keeping the orientation.
+    fn flatten(&mut self, ring: &[Corner], mesh: &MeshBuilder) {
+        let at = |c: &Corner| mesh.positions[c.vertex as usize];
+        let mut normal = DVec3::ZERO;
+        for (n, corner) in ring.iter().enumerate() {
+            let next = at(&ring[(n + 1) % ring.len()]);
+            let origin = at(&ring[0]);
+            normal += (at(corner) - origin).cross(next - origin);
+        }
+        let size = normal.abs();
+        self.flat.clear();
+        self.flat.extend(ring.iter().map(|corner| {
+            let p = at(corner);
+            let (flat, forward) = if size.x >= size.y && size.x >= size.z {
+                (DVec2::new(p.y, p.z), normal.x >= 0.0)
+            } else if size.y >= size.z {
+                (DVec2::new(p.z, p.x), normal.y >= 0.0)
+            } else {
+                (DVec2::new(p.x, p.y), normal.z >= 0.0)
+            };
+            if forward {
+                flat
+            } else {
+                DVec2::new(flat.y, flat.x)
+            }
+        }));
+    }
+
+    /// The convex, empty, allowed ear with the shortest diagonal.
+    fn best_ear(&self, ring: &[Corner], own: u16) -> Option<usize> {
+        let n = ring.len();
+        let mut best = None;
+        for ear in 0..n {
+            let (before, after) = ((ear + n - 1) % n, (ear + 1) % n);
+            let (a, c) = (ring[before], ring[after]);
+            if share_a_side(a, c, own) || self.diagonals.contains(&diagonal(a, c)) {
+                continue;
+            }
+            let [p, q, r] = [before, ear, after].map(|at| self.flat[at]);
+            if (q - p).perp_dot(r - q) <= 0.0 {
+                continue;
+            }
+            let empty = (0..n)
+                .filter(|at| ![before, ear, after].contains(at))
+                .all(|at| {
+                    let x = self.flat[at];
+                    (q - p).perp_dot(x - p) < 0.0
+                        || (r - q).perp_dot(x - q) < 0.0
+                        || (p - r).perp_dot(x - r) < 0.0
+                });
+            let length = p.distance_squared(r);
+            if empty && best.is_none_or(|(shortest, _)| length < shortest) {
+                best = Some((length, ear));
+            }
+        }
+        best.map(|(_, ear)| ear)
+    }
+}
+
+fn diagonal(a: Corner, b: Corner) -> [u32; 2] {
+    [a.vertex.min(b.vertex), a.vertex.max(b.vertex)]
+}
+
+fn share_a_side(a: Corner, b: Corner, own: u16) -> bool {
+    a.vertex == b.vertex
+        || a.planes
+            .iter()
+            .any(|p| *p != own && *p != NO_PLANE && b.planes.contains(p))
+}
+
+fn fan(ring: &[Corner], primitive: u32, label: Label, mesh: &mut MeshBuilder) {
+    let sum: DVec3 = ring.iter().map(|c| mesh.positions[c.vertex as usize]).sum();
+    let center = mesh.interior_vertex(sum / ring.len() as f64);
+    for (at, corner) in ring.iter().enumerate() {
+        let next = ring[(at + 1) % ring.len()];
+        mesh.push_oriented([corner.vertex, next.vertex, center], primitive, label);
+    }
+}

@@ -1,0 +1,168 @@
+//! First traversal: where the metric rule (`crate::certify`) wants to bisect.
+
+use crate::certify::{Sheet, barycentric_gradients, creases_within, sheet, spread_rad};
+use crate::convert::Plan;
+use crate::lattice::Point;
+use crate::limits::Budget;
+use crate::settings::{MAX_SPOTS, Observer, Reason, Report, Spot};
+use crate::simplex::Simplex;
+use crate::walk::{Frame, Sector, Visitor};
+use csg::PrimitiveId;
+use rayon::prelude::*;
+
+/// Most primitives in a leaf that the metric rule accepts.
+const CROWD: usize = 8;
+
+/// First traversal: the midpoints at which the metric rule wants to bisect, each once.
+pub(crate) fn prove(
+    plan: &Plan<'_>,
+    budget: &Budget<'_>,
+    sectors: &[Sector],
+    head: Prover<'_>,
+    report: &mut Report,
+    observer: &dyn Observer,
+) -> Vec<Point> {
+    observer.stage("proving", Some(sectors.len() as u64));
+    let parts: Vec<Findings> = sectors
+        .par_iter()
+        .map_init(
+            || plan.walker(),
+            |walker, sector| {
+                let mut prover = Prover::new(plan, budget);
+                walker.walk(sector, &mut prover);
+                prover.flush();
+                observer.advance(1);
+                prover.findings.splits.sort_unstable();
+                prover.findings.splits.dedup();
+                prover.findings
+            },
+        )
+        .collect();
+    let mut splits = head.findings.splits;
+    let mut largest = 0.0f64;
+    report.visited += head.findings.visited;
+    for part in parts {
+        splits.extend(part.splits);
+        largest = largest.max(part.largest_deviation);
+        report.visited += part.visited;
+        report.uncertified_leaves += part.uncertified_leaves;
+        let room = MAX_SPOTS - report.uncertified.len();
+        report
+            .uncertified
+            .extend(part.uncertified.into_iter().take(room));
+    }
+    splits.par_sort_unstable();
+    splits.dedup();
+    report.largest_deviation = Some(largest * plan.solid.domain.size());
+    splits
+}
+
+/// What one subtree's first traversal found.
+#[derive(Debug, Default)]
+struct Findings {
+    splits: Vec<Point>,
+    visited: u64,
+    largest_deviation: f64,
+    uncertified_leaves: u64,
+    uncertified: Vec<Spot>,
+}
+
+/// Applies the rule to every simplex on the way down.
+pub(crate) struct Prover<'a> {
+    plan: &'a Plan<'a>,
+    budget: &'a Budget<'a>,
+    findings: Findings,
+    leaves: u64,
+    sheets: Vec<Sheet>,
+}
+
+impl<'a> Prover<'a> {
+    pub(crate) fn new(plan: &'a Plan<'a>, budget: &'a Budget<'a>) -> Self {
+        Self {
+            plan,
+            budget,
+            findings: Findings::default(),
+            leaves: 0,
+            sheets: Vec::new(),
+        }
+    }
+
+    fn flush(&mut self) {
+        self.budget.add_cells(std::mem::take(&mut self.leaves));
+    }
+
+    /// The metric rule; the largest deviation where it accepts.
+    fn test(&mut self, simplex: &Simplex, frame: &Frame, tolerance: f64) -> Result<f64, Reason> {
+        if frame.active.len() > CROWD {
+            return Err(Reason::Crowded);
+        }
+        self.sheets.clear();
+        let gradients = barycentric_gradients(simplex);
+        let mut largest = 0.0f64;
+        for active in &frame.active {
+            let table = &self.plan.tables[active.degree as usize - 1];
+            let coefficients = frame.coefficients_of(active);
+            let found =
+                sheet(table, coefficients, &gradients, tolerance).ok_or(Reason::Singular)?;
+            largest = largest.max(found.deviation);
+            self.sheets.push(found);
+        }
+        if self.sheets.len() > 1 && largest > 0.0 {
+            for (active, found) in frame.active.iter().zip(&mut self.sheets) {
+                let table = &self.plan.tables[active.degree as usize - 1];
+                let coefficients = frame.coefficients_of(active);
+                found.spread_rad = spread_rad(table, coefficients, &gradients, found.normal);
+            }
+            if !creases_within(&self.sheets, tolerance) {
+                return Err(Reason::Tangent);
+            }
+        }
+        Ok(largest)
+    }
+
+    fn list(&mut self, simplex: &Simplex, frame: &Frame, reason: Reason) {
+        self.findings.uncertified_leaves += 1;
+        if self.findings.uncertified.len() < MAX_SPOTS {
+            let domain = &self.plan.solid.domain;
+            let corners = simplex.vertices.map(|v| domain.to_model(v.position()));
+            self.findings.uncertified.push(Spot {
+                position: corners.iter().copied().sum::<glam::DVec3>() * 0.25,
+                size: corners[0].distance(corners[3]),
+                primitives: frame
+                    .active
+                    .iter()
+                    .map(|a| PrimitiveId(a.primitive))
+                    .collect(),
+                reason,
+            });
+        }
+    }
+}
+
+impl Visitor for Prover<'_> {
+    fn visit(&mut self, simplex: &Simplex, frame: &Frame) -> bool {
+        self.findings.visited += 1;
+        let Some(tolerance) = self.plan.tolerance else {
+            return simplex.level < self.plan.max_level;
+        };
+        match self.test(simplex, frame, tolerance) {
+            Ok(deviation) => {
+                self.findings.largest_deviation = self.findings.largest_deviation.max(deviation);
+            }
+            Err(_) if simplex.level < self.plan.max_level => {
+                self.findings.splits.push(simplex.midpoint());
+                return true;
+            }
+            Err(reason) => self.list(simplex, frame, reason),
+        }
+        self.leaves += 1;
+        if self.leaves == 1024 {
+            self.flush();
+        }
+        false
+    }
+
+    fn stopped(&self) -> bool {
+        self.budget.stopped()
+    }
+}

@@ -1,0 +1,119 @@
+//! What a run may be asked for, and what it reports.
+
+use crate::Criterion;
+use csg::PrimitiveId;
+use glam::DVec3;
+
+/// When subdivision ends.
+#[derive(Clone, Copy, PartialEq, Debug)]
+pub enum Rule {
+    /// When the proved deviation of every affine interpolant is at most this, in model units.
+    Tolerance(f64),
+    /// At this bisection level everywhere on the boundary (three levels halve the cells).
+    Level(u8),
+}
+
+/// How to subdivide.
+#[derive(Clone, PartialEq, Debug)]
+pub struct Settings {
+    /// When to stop.
+    pub rule: Rule,
+    /// Deepest level that the tolerance may lead to; `None`: the one at which cells are as small
+    /// as the tolerance.
+    pub max_level: Option<u8>,
+    /// How polynomials are bounded.
+    pub criterion: Criterion,
+    /// Number of threads; `None`: one for each core.
+    pub threads: Option<usize>,
+    /// Most leaves that meet the boundary.
+    pub max_cells: u64,
+    /// Most memory that the subdivision may take, by estimate.
+    pub max_memory_bytes: u64,
+}
+
+impl Settings {
+    /// The usual settings with this rule.
+    #[must_use]
+    pub fn new(rule: Rule) -> Self {
+        Self {
+            rule,
+            max_level: None,
+            criterion: Criterion::Bezier,
+            threads: None,
+            max_cells: 100_000_000,
+            max_memory_bytes: 16 << 30,
+        }
+    }
+}
+
+/// Why a leaf was not certified.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub enum Reason {
+    /// A primitive's gradient nearly vanishes or turns too much: a singular point.
+    Singular,
+    /// Surfaces meet at too small an angle, or nearly touch.
+    Tangent,
+    /// More surfaces meet than the certificate handles.
+    Crowded,
+}
+
+/// A leaf at the deepest level whose deviation is not proved.
+#[derive(Clone, PartialEq, Debug)]
+pub struct Spot {
+    /// Its middle, in model units.
+    pub position: DVec3,
+    /// Its longest edge, in model units.
+    pub size: f64,
+    /// The primitives involved.
+    pub primitives: Vec<PrimitiveId>,
+    /// What went wrong.
+    pub reason: Reason,
+}
+
+/// What happened.
+#[derive(Clone, PartialEq, Debug, Default)]
+pub struct Report {
+    /// Bisections made in the final traversal.
+    pub bisections: u64,
+    /// Leaves that meet the boundary.
+    pub leaves: u64,
+    /// Simplices visited in both traversals.
+    pub visited: u64,
+    /// Midpoints inserted by the closure beyond those that the rule asked for.
+    pub balance_points: u64,
+    /// Deepest level of a leaf.
+    pub deepest_level: u8,
+    /// Largest deviation proved for a single surface in a certified leaf, in model units; `None`
+    /// when no leaf was tested (fixed level).
+    pub largest_deviation: Option<f64>,
+    /// Number of leaves that are not certified.
+    pub uncertified_leaves: u64,
+    /// The first of them, at most [`MAX_SPOTS`].
+    pub uncertified: Vec<Spot>,
+    /// Vertices duplicated since the boundary touches itself there.
+    pub split_vertices: u64,
+    /// Seconds taken by: proving (first traversal), balancing, extraction.
+    pub seconds: [f64; 3],
+}
+
+/// Most uncertified leaves listed one by one.
+pub const MAX_SPOTS: usize = 1000;
+
+/// Receives progress; also asked whether to go on.
+pub trait Observer: Sync {
+    /// A stage begins, of `total` steps where known.
+    fn stage(&self, name: &str, total: Option<u64>);
+    /// So many more steps are done.
+    fn advance(&self, steps: u64);
+    /// Whether the user wants to stop.
+    fn cancelled(&self) -> bool;
+}
+
+/// Watches nothing.
+impl Observer for () {
+    fn stage(&self, _: &str, _: Option<u64>) {}
+    fn advance(&self, _: u64) {}
+    fn cancelled(&self) -> bool {
+        false
+    }
+}

@@ -1,0 +1,262 @@
+//! Depth-first descent of the bintree (thesis 4.3, Algorithms 4.1–4.3): every bisection halves
+//! the undecided primitives, classifies them in both children and prunes the formula.
+
+use crate::bernstein::{count, vertex_values};
+use crate::blossom::RootCoefficients;
+use crate::classify::{Criterion, classify};
+use crate::halving::halve;
+use crate::simplex::Simplex;
+use csg::{FormulaNode, LocalizeScratch, PrimitiveId, Solid, Ternary, localize};
+
+/// A primitive whose sign is not known in a simplex.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Active {
+    /// Its global index.
+    pub primitive: u32,
+    /// Its degree.
+    pub degree: u32,
+    /// Where its coefficients begin in [`Frame::coefficients`].
+    pub offset: u32,
+}
+
+/// What is known of the solid in one simplex.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Frame {
+    /// Bernstein coefficients of the active primitives, one after the other.
+    pub coefficients: Vec<f64>,
+    /// The primitives that the formula needs, ascending.
+    pub active: Vec<Active>,
+    /// The formula pruned to them.
+    pub formula: Vec<FormulaNode>,
+}
+
+impl Frame {
+    fn clear(&mut self) {
+        self.coefficients.clear();
+        self.active.clear();
+        self.formula.clear();
+    }
+
+    /// The Bernstein coefficients of an active primitive.
+    #[must_use]
+    pub(crate) fn coefficients_of(&self, active: &Active) -> &[f64] {
+        let start = active.offset as usize;
+        &self.coefficients[start..start + count(active.degree as usize)]
+    }
+
+    /// Its values at the simplex' vertices.
+    #[must_use]
+    pub(crate) fn values_of(&self, active: &Active) -> [f64; 4] {
+        vertex_values(active.degree as usize, self.coefficients_of(active))
+    }
+}
+
+/// A simplex of the bintree with its frame.
+#[derive(Clone, Debug)]
+pub(crate) struct Sector {
+    /// The simplex.
+    pub simplex: Simplex,
+    /// What is known there.
+    pub frame: Frame,
+}
+
+/// Bounds that hold for a primitive everywhere.
+#[derive(Clone, Copy, Debug)]
+struct Bound {
+    /// Bound on the error of its Bernstein coefficients.
+    error: f64,
+}
+
+/// Visits the simplices that meet the boundary.
+pub(crate) trait Visitor {
+    /// Looks at a simplex whose formula is undecided; whether to bisect it.
+    fn visit(&mut self, simplex: &Simplex, frame: &Frame) -> bool;
+
+    /// Whether to stop the traversal.
+    fn stopped(&self) -> bool {
+        false
+    }
+}
+
+/// Work space of a descent.
+#[derive(Debug)]
+pub(crate) struct Walker {
+    criterion: Criterion,
+    bounds: Vec<Bound>,
+    /// Two children per level below the sector.
+    frames: Vec<[Frame; 2]>,
+    /// Value of each primitive in the child at hand.
+    values: [Vec<Ternary>; 2],
+    /// Marks the primitives that a pruned formula uses.
+    used: Vec<u32>,
+    stamp: u32,
+    scratch: LocalizeScratch,
+}
+
+impl Walker {
+    /// A walker for this solid.
+    #[must_use]
+    pub(crate) fn new(solid: &Solid, roots: &[RootCoefficients], criterion: Criterion) -> Self {
+        let n = solid.primitives.len();
+        Self {
+            criterion,
+            bounds: roots.iter().map(|r| Bound { error: r.error }).collect(),
+            frames: Vec::new(),
+            values: [vec![Ternary::Unknown; n], vec![Ternary::Unknown; n]],
+            used: vec![0; n],
+            stamp: 0,
+            scratch: LocalizeScratch::default(),
+        }
+    }
+
+    /// The root simplices that the boundary may meet.
+    #[must_use]
+    pub(crate) fn roots(&mut self, solid: &Solid, roots: &[RootCoefficients]) -> Vec<Sector> {
+        let mut sectors = Vec::new();
+        for (at, simplex) in Simplex::roots().into_iter().enumerate() {
+            let mut frame = Frame::default();
+            for (primitive, root) in roots.iter().enumerate() {
+                let coefficients = &root.roots[at];
+                let value = classify(self.criterion, root.degree, coefficients, root.error);
+                self.values[0][primitive] = value;
+                if value == Ternary::Unknown {
+                    frame.active.push(Active {
+                        primitive: primitive as u32,
+                        degree: root.degree as u32,
+                        offset: frame.coefficients.len() as u32,
+                    });
+                    frame.coefficients.extend_from_slice(coefficients);
+                }
+            }
+            let values = &self.values[0];
+            let value = |p: PrimitiveId| values[p.0 as usize];
+            let nodes = solid.formula.nodes();
+            if localize(nodes, value, &mut frame.formula, &mut self.scratch) == Ternary::Unknown {
+                self.drop_unused(&mut frame);
+                sectors.push(Sector { simplex, frame });
+            }
+        }
+        sectors
+    }
+
+    /// The children of a sector that the boundary may meet.
+    #[must_use]
+    pub(crate) fn bisect(&mut self, sector: &Sector) -> Vec<Sector> {
+        let mut frames = [Frame::default(), Frame::default()];
+        let undecided = self.descend(&sector.frame, sector.simplex.kind(), &mut frames);
+        let children = sector.simplex.children();
+        let all = children.into_iter().zip(frames).zip(undecided);
+        all.filter(|(_, undecided)| *undecided)
+            .map(|((simplex, frame), _)| Sector { simplex, frame })
+            .collect()
+    }
+
+    /// Visits a sector and its descendants in depth-first order.
+    pub(crate) fn walk(&mut self, sector: &Sector, visitor: &mut impl Visitor) {
+        if visitor.visit(&sector.simplex, &sector.frame) {
+            self.walk_children(&sector.simplex, &sector.frame, 0, visitor);
+        }
+    }
+
+    /// Recursion depth is bounded by the lattice's levels, not by the input.
+    fn walk_children(
+        &mut self,
+        simplex: &Simplex,
+        frame: &Frame,
+        depth: usize,
+        visitor: &mut impl Visitor,
+    ) {
+        if self.frames.len() == depth {
+            self.frames.push([Frame::default(), Frame::default()]);
+        }
+        // Taken out, and put back with its buffers when this level is done.
+        let mut frames = std::mem::take(&mut self.frames[depth]);
+        let undecided = self.descend(frame, simplex.kind(), &mut frames);
+        let children = simplex.children();
+        for side in 0..2 {
+            if undecided[side]
+                && !visitor.stopped()
+                && visitor.visit(&children[side], &frames[side])
+            {
+                self.walk_children(&children[side], &frames[side], depth + 1, visitor);
+            }
+        }
+        self.frames[depth] = frames;
+    }
+
+    /// Fills the frames of both children; tells in which the formula is undecided.
+    fn descend(&mut self, parent: &Frame, kind: u8, frames: &mut [Frame; 2]) -> [bool; 2] {
+        let [near, far] = frames;
+        near.clear();
+        far.clear();
+        let mut decided = [false; 2];
+        for active in &parent.active {
+            let degree = active.degree as usize;
+            let length = count(degree);
+            let starts = [near.coefficients.len(), far.coefficients.len()];
+            near.coefficients.resize(starts[0] + length, 0.0);
+            far.coefficients.resize(starts[1] + length, 0.0);
+            halve(
+                degree,
+                kind,
+                parent.coefficients_of(active),
+                &mut near.coefficients[starts[0]..],
+                &mut far.coefficients[starts[1]..],
+            );
+            let error = self.bounds[active.primitive as usize].error;
+            for (side, frame) in [&mut *near, &mut *far].into_iter().enumerate() {
+                let start = starts[side];
+                let value = classify(self.criterion, degree, &frame.coefficients[start..], error);
+                self.values[side][active.primitive as usize] = value;
+                if value == Ternary::Unknown {
+                    frame.active.push(Active {
+                        offset: start as u32,
+                        ..*active
+                    });
+                } else {
+                    frame.coefficients.truncate(start);
+                    decided[side] = true;
+                }
+            }
+        }
+        let near_open = self.prune(parent, near, 0, decided[0]);
+        let far_open = self.prune(parent, far, 1, decided[1]);
+        [near_open, far_open]
+    }
+
+    /// Prunes the parent's formula for a child; whether it stays undecided.
+    fn prune(&mut self, parent: &Frame, child: &mut Frame, side: usize, decided: bool) -> bool {
+        if !decided {
+            child.formula.extend_from_slice(&parent.formula);
+            return true;
+        }
+        if child.active.is_empty() {
+            return false;
+        }
+        let values = &self.values[side];
+        let value = |p: PrimitiveId| values[p.0 as usize];
+        let result = localize(
+            &parent.formula,
+            value,
+            &mut child.formula,
+            &mut self.scratch,
+        );
+        if result != Ternary::Unknown {
+            return false;
+        }
+        self.drop_unused(child);
+        true
+    }
+
+    /// Keeps only the active primitives that the formula still mentions.
+    fn drop_unused(&mut self, frame: &mut Frame) {
+        self.stamp += 1;
+        for node in &frame.formula {
+            if let FormulaNode::Literal(literal) = node {
+                self.used[literal.primitive.0 as usize] = self.stamp;
+            }
+        }
+        let (used, stamp) = (&self.used, self.stamp);
+        frame.active.retain(|a| used[a.primitive as usize] == stamp);
+    }
+}
