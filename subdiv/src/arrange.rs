@@ -244,10 +244,10 @@ impl Arrangement {
 }
 
 /// A list of at most four indices of primitives or simplex vertices.
-type Indices = arrayvec::ArrayVec<usize, 4>;
+pub(crate) type Indices = arrayvec::ArrayVec<usize, 4>;
 
 /// The primitives through a vertex, and the simplex vertices of the face in which it lies.
-fn support(name: [u16; 3]) -> (Indices, Indices) {
+pub(crate) fn support(name: [u16; 3]) -> (Indices, Indices) {
     let mut rows = Indices::default();
     let mut on_face = [true; 4];
     for plane in name {

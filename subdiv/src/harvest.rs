@@ -139,12 +139,8 @@ impl Harvester<'_> {
             }
             &self.pruned
         };
-        let values = |primitive: u32| {
-            let found = frame.active.iter().find(|a| a.primitive == primitive);
-            found.map_or([0.0; 4], |active| frame.values_of(active))
-        };
         self.extractor
-            .extract(simplex, formula, values, &mut self.harvest.mesh)
+            .extract(simplex, formula, frame, &mut self.harvest.mesh)
     }
 }
 

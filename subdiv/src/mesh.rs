@@ -7,6 +7,7 @@ use crate::simplex::Simplex;
 use csg::{PrimitiveId, Sense};
 use glam::DVec3;
 use rustc_hash::FxHashMap;
+use std::collections::hash_map::Entry;
 
 /// Name of a vertex that several simplices of a conforming subdivision may share.
 ///
@@ -118,19 +119,22 @@ impl MeshBuilder {
         self.push(position, VertexKind::Interior)
     }
 
-    /// The vertex where a primitive crosses the edge a–b; `fa` and `fb` are its values there.
-    pub(crate) fn edge_vertex(&mut self, a: (Point, f64), b: (Point, f64), primitive: u32) -> u32 {
-        let midpoint = a.0.midpoint(b.0);
-        if let Some(&found) = self.edges.get(&(midpoint, primitive)) {
-            return found;
-        }
-        // In an order that depends on the edge alone, so that the position does, too.
-        let (a, b) = if a.0 < b.0 { (a, b) } else { (b, a) };
-        let t = a.1 / (a.1 - b.1);
-        let t = if t.is_finite() { t } else { 0.5 };
-        let (p, q) = (a.0.position(), b.0.position());
-        let vertex = self.push(p + (q - p) * t, VertexKind::Edge);
-        self.edges.insert((midpoint, primitive), vertex);
+    /// The vertex where a primitive crosses the edge with this midpoint, at `position` when it is
+    /// new.
+    pub(crate) fn edge_vertex(
+        &mut self,
+        midpoint: Point,
+        primitive: u32,
+        position: impl FnOnce() -> DVec3,
+    ) -> u32 {
+        let entry = match self.edges.entry((midpoint, primitive)) {
+            Entry::Occupied(found) => return *found.get(),
+            Entry::Vacant(entry) => entry,
+        };
+        let vertex = self.positions.len() as u32;
+        entry.insert(vertex);
+        self.positions.push(position());
+        self.kinds.push(VertexKind::Edge);
         if self.on_border(midpoint.coordinates(), 1) {
             let name = Name::Edge {
                 midpoint,

@@ -1,0 +1,99 @@
+//! One leaf of the subdivision with the primitives that cross it, and where its vertices lie.
+
+use crate::arrange::{Arrangement, FACET, Planes, barycentric, support};
+use crate::leaf_formula::Label;
+use crate::mesh::MeshBuilder;
+use crate::simplex::Simplex;
+use crate::snap::{LeafPolynomial, Snapper};
+use arrayvec::ArrayVec;
+use glam::DVec3;
+
+/// What is known of a leaf.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Leaf<'a> {
+    /// Where it is.
+    pub(crate) simplex: &'a Simplex,
+    /// The affine interpolants.
+    pub(crate) planes: Planes<'a>,
+    /// The polynomials themselves, in the same order.
+    pub(crate) polynomials: &'a [LeafPolynomial<'a>],
+}
+
+impl Leaf<'_> {
+    /// Position of an arrangement vertex, in the domain's own coordinates: on the polynomials
+    /// where Newton's method finds them inside the vertex' face, else on their interpolants.
+    pub(crate) fn position(&self, name: [u16; 3], snapper: &mut Snapper) -> DVec3 {
+        let corners = self.simplex.vertices.map(crate::lattice::Point::position);
+        let (rows, columns) = support(name);
+        let affine = barycentric(&self.planes, name).unwrap_or_else(|| {
+            // All minors vanish: the planes coincide on the face. Any of its points will do.
+            let mut weights = [0.0; 4];
+            for &column in &columns {
+                weights[column] = 1.0 / columns.len() as f64;
+            }
+            weights
+        });
+        let polynomials: ArrayVec<_, 3> = rows.iter().map(|row| self.polynomials[*row]).collect();
+        let curved = polynomials.iter().any(|p| p.degree > 1);
+        let snapped = curved.then(|| snapper.crossing(&polynomials, &columns, affine));
+        let b = snapped.flatten().unwrap_or(affine);
+        (0..4).map(|v| corners[v] * b[v]).sum()
+    }
+
+    /// The mesh vertex where a primitive crosses the edge p–q of the simplex.
+    pub(crate) fn edge_vertex(
+        &self,
+        primitive: usize,
+        [p, q]: [usize; 2],
+        snapper: &mut Snapper,
+        mesh: &mut MeshBuilder,
+    ) -> u32 {
+        // In an order that depends on the edge alone, so that the position does, too.
+        let v = &self.simplex.vertices;
+        let (p, q) = if v[p] < v[q] { (p, q) } else { (q, p) };
+        let midpoint = v[p].midpoint(v[q]);
+        mesh.edge_vertex(midpoint, self.planes.primitives[primitive], || {
+            let t = snapper.edge_root(self.polynomials[primitive], p, q);
+            let (a, b) = (v[p].position(), v[q].position());
+            a + (b - a) * t
+        })
+    }
+}
+
+/// One primitive's polygon in a leaf, arranged.
+#[derive(Clone, Copy)]
+pub(crate) struct LeafPolygon<'a> {
+    /// The leaf.
+    pub(crate) leaf: &'a Leaf<'a>,
+    /// Its arrangement, last cut for `own`.
+    pub(crate) arrangement: &'a Arrangement,
+    /// Local number of the primitive.
+    pub(crate) own: usize,
+}
+
+impl LeafPolygon<'_> {
+    /// Global index of the primitive.
+    pub(crate) fn primitive(&self) -> u32 {
+        self.leaf.planes.primitives[self.own]
+    }
+
+    /// What its pieces have in common: plane in the leaf, primitive and label.
+    pub(crate) fn piece(&self, label: Label) -> (u16, u32, Label) {
+        (self.own as u16, self.primitive(), label)
+    }
+
+    /// The mesh vertex of an arrangement vertex on an edge.
+    pub(crate) fn edge_vertex(
+        &self,
+        name: [u16; 3],
+        snapper: &mut Snapper,
+        mesh: &mut MeshBuilder,
+    ) -> u32 {
+        let mut ends = (0..4u16)
+            .filter(|v| !name.contains(&(FACET + v)))
+            .map(usize::from);
+        let ends = [ends.next().unwrap_or(0), ends.next().unwrap_or(0)];
+        self.leaf
+            .edge_vertex(usize::from(name[0]), ends, snapper, mesh)
+    }
+}
