@@ -2,11 +2,14 @@
 //!
 //! Space outside the cube [−1, 1]³ of a frame is six projective boxes: with x = ±1/t, y = u/t,
 //! z = v/t and so on, u and v in [−1, 1] and t in [0, 1], where t = 0 is the plane at infinity.
-//! The set is bounded if the boxes that touch t = 0 can be proved to miss it; Bernstein
-//! coefficients bound the polynomials and the formula is evaluated in three values. The box is
-//! then found by branch and bound in each direction.
+//! The set is taken for bounded if it is proved to have no point with t in [1e-9, 1e-6]; Bernstein
+//! coefficients bound the polynomials and the formula is evaluated in three values. Parts that
+//! are only farther away than that are ignored. The box is then found by branch and bound in
+//! each direction.
 
 mod cell;
+mod directions;
+mod search;
 mod tensor;
 
 pub(crate) use cell::Problem;
@@ -14,33 +17,48 @@ pub(crate) use cell::Problem;
 use crate::matrix::{Bounded, IDENTITY};
 use crate::{Aabb, Error, LocalizeScratch, Polynomial, Ternary};
 use cell::Cell;
+use directions::DirectionTable;
 use glam::DVec3;
-use std::collections::BinaryHeap;
+use search::farthest;
 use tensor::Role;
 
-/// Multiplications that one proof may cost: about half a second.
-const PROOF_WORK: u64 = 300_000_000;
+/// Multiplications that one proof may cost: about a second.
+const PROOF_WORK: u64 = 1_000_000_000;
 
-/// Multiplications that the search for a box's extent in one direction may cost.
+/// Multiplications that the search for the extent in one direction may cost.
 const SEARCH_WORK: u64 = 20_000_000;
 
-/// Solids farther away than this many times their frame's size count as unbounded.
-const FARTHEST: f64 = 1e9;
+/// The same for the six directions of the final box, on which most depends.
+const AXIS_WORK: u64 = 60_000_000;
+
+/// Solids that reach farther than this many frame sizes count as unbounded.
+const FARTHEST: f64 = 1e6;
+
+/// What is farther away than this many frame sizes is not looked at.
+///
+/// On the plane at infinity itself nothing can be proved for paraboloids and other surfaces that
+/// touch it: their coefficients' last bits decide whether there is another sheet out there.
+const HORIZON: f64 = 1e9;
 
 /// Width of the cells in which a direction's search ends, in sizes of the box, while the box is
 /// still shrinking and at last.
 const COARSE: f64 = 1.0 / 32.0;
 
 /// See [`COARSE`].
-const FINE: f64 = 1.0 / 512.0;
+const FINE: f64 = 1.0 / 256.0;
 
 /// A bounded set, with its description over the box that it was found in.
 pub(crate) struct BoundedSet {
     /// Centre and half sides of the box.
     center: DVec3,
     half: DVec3,
+    /// None when the set is proved empty.
     root: Option<Cell>,
     errors: Vec<f64>,
+    /// The final box, in the coordinates of the box above.
+    tight: Aabb,
+    /// Extents in other directions, in the same coordinates.
+    table: DirectionTable,
 }
 
 /// Gives the problem in the coordinates of a frame, given by the map from the frame to them.
@@ -68,9 +86,14 @@ pub(crate) fn prove(set: &impl Framed) -> Result<Option<BoundedSet>, Error> {
     let mut found = BoundedSet::over(set, center, half)?;
     // Each pass shrinks by up to 1/COARSE; one that shrinks little is the last.
     for _ in 0..40 {
-        let Some(inner) = found.extent(COARSE) else {
+        let inner = found.extent(COARSE, SEARCH_WORK);
+        if inner.is_empty() {
             found.root = None;
             return Ok(Some(found));
+        }
+        let inner = Aabb {
+            min: center + half * inner.min,
+            max: center + half * inner.max,
         };
         let sides = (inner.max - inner.min).max(DVec3::splat(1e-12 * reach * scale));
         let shrinks = sides.cmplt(half * 1.2).any();
@@ -81,6 +104,7 @@ pub(crate) fn prove(set: &impl Framed) -> Result<Option<BoundedSet>, Error> {
             break;
         }
     }
+    found.tighten();
     Ok(Some(found))
 }
 
@@ -127,54 +151,25 @@ fn reach(problem: &Problem) -> Option<f64> {
     let mut nearest: f64 = 1.0;
     while let Some(mut cell) = cells.pop() {
         let class = cell.classify(&problem.errors, &mut scratch);
-        if class == Ternary::Out {
+        if class == Ternary::Out || cell.high.z * HORIZON <= 1.0 {
             continue;
         }
-        if cell.low.z > 0.0 {
+        if cell.low.z * FARTHEST >= 1.0 {
             nearest = nearest.min(cell.low.z);
             continue;
         }
-        if class == Ternary::In || cell.high.z * FARTHEST < 1.0 || work > PROOF_WORK {
+        if class == Ternary::In || work > PROOF_WORK {
             return None;
         }
         let axis = cell.liveliest_axis();
         // Cells this narrow are beyond rounding: what is undecided there stays so.
-        if cell.high[axis] - cell.low[axis] < 1e-9 {
+        if cell.high[axis] - cell.low[axis] < 1e-11 {
             return None;
         }
         cells.extend(cell.halves(axis, &mut work));
     }
     Some(1.0 / nearest)
 }
-
-/// A cell in the queue: farthest first, of equally far ones the smallest, so that a flat side
-/// is reached by one descent.
-struct Queued {
-    farthest: f64,
-    level: u32,
-    cell: Cell,
-}
-
-impl Ord for Queued {
-    fn cmp(&self, other: &Self) -> std::cmp::Ordering {
-        let by_distance = self.farthest.total_cmp(&other.farthest);
-        by_distance.then(self.level.cmp(&other.level))
-    }
-}
-
-impl PartialOrd for Queued {
-    fn partial_cmp(&self, other: &Self) -> Option<std::cmp::Ordering> {
-        Some(self.cmp(other))
-    }
-}
-
-impl PartialEq for Queued {
-    fn eq(&self, other: &Self) -> bool {
-        self.cmp(other).is_eq()
-    }
-}
-
-impl Eq for Queued {}
 
 impl BoundedSet {
     /// The set, known to lie in a box.
@@ -191,75 +186,53 @@ impl BoundedSet {
             half,
             root: Some(Cell::root(&problem, inner, &mut 0)),
             errors: problem.errors,
+            tight: Aabb {
+                min: DVec3::NEG_ONE,
+                max: DVec3::ONE,
+            },
+            table: DirectionTable::default(),
         })
     }
 
     /// The least upper bound found of d · x over the set; −∞ if the set is proved empty.
     ///
-    /// Never too small; too large by a thousandth of the set's size, or more if the search
-    /// becomes too expensive.
+    /// Never too small. Too large by a few thousandths of the set's size along the axes and by a
+    /// hundredth in other directions, or more if the search becomes too expensive.
     pub(crate) fn support(&self, direction: DVec3) -> f64 {
-        self.search(direction, FINE)
-    }
-
-    /// The set's bounding box to a relative precision, if it is not proved empty.
-    fn extent(&self, precision: f64) -> Option<Aabb> {
-        let mut extent = Aabb::EVERYWHERE;
-        for (axis, direction) in DVec3::AXES.into_iter().enumerate() {
-            extent.max[axis] = self.search(direction, precision);
-            extent.min[axis] = -self.search(-direction, precision);
-        }
-        (!extent.is_empty()).then_some(extent)
-    }
-
-    fn search(&self, direction: DVec3, precision: f64) -> f64 {
         let Some(root) = &self.root else {
             return f64::NEG_INFINITY;
         };
         let d = direction * self.half;
-        let farthest = |cell: &Cell| (d * cell.low).max(d * cell.high).element_sum();
-        let narrow = precision * 2.0 * d.abs().element_sum();
-        let mut work = 0;
-        let mut scratch = LocalizeScratch::default();
-        let mut queue = BinaryHeap::new();
-        queue.push(Queued {
-            farthest: farthest(root),
-            level: 0,
-            cell: root.clone(),
-        });
-        while let Some(Queued {
-            farthest: bound,
-            level,
-            mut cell,
-        }) = queue.pop()
-        {
-            match cell.classify(&self.errors, &mut scratch) {
-                Ternary::Out => continue,
-                Ternary::Unknown => {}
-                Ternary::In => return direction.dot(self.center) + bound,
-            }
-            let sides = cell.high - cell.low;
-            if (d.abs() * sides).element_sum() <= narrow && sides.max_element() <= 16.0 * precision
-                || work > SEARCH_WORK
-            {
-                return direction.dot(self.center) + bound;
-            }
-            let longest = |best: usize, axis: usize| {
-                if sides[axis] > sides[best] {
-                    axis
-                } else {
-                    best
-                }
-            };
-            let axis = [1, 2].into_iter().fold(0, longest);
-            for half in cell.halves(axis, &mut work) {
-                queue.push(Queued {
-                    farthest: farthest(&half),
-                    level: level + 1,
-                    cell: half,
-                });
+        let of_box = (d * self.tight.min).max(d * self.tight.max).element_sum();
+        let axes = d.to_array().iter().filter(|c| **c != 0.0).count();
+        let extent = if axes == 1 {
+            of_box
+        } else {
+            let search = |d| farthest(root, &self.errors, d, FINE, SEARCH_WORK);
+            of_box.min(self.table.support(d, search))
+        };
+        direction.dot(self.center) + extent
+    }
+
+    /// Finds the final box.
+    fn tighten(&mut self) {
+        self.tight = self.extent(FINE, AXIS_WORK);
+        if self.tight.is_empty() {
+            self.root = None;
+        }
+    }
+
+    /// The set's bounding box to a relative precision, empty if the set is proved so, in the
+    /// coordinates of the box that it was found in.
+    fn extent(&self, precision: f64, allowed: u64) -> Aabb {
+        let mut extent = Aabb::EMPTY;
+        if let Some(root) = &self.root {
+            let search = |d: DVec3| farthest(root, &self.errors, d, precision, allowed);
+            for (axis, direction) in DVec3::AXES.into_iter().enumerate() {
+                extent.max[axis] = search(direction);
+                extent.min[axis] = -search(-direction);
             }
         }
-        f64::NEG_INFINITY
+        extent
     }
 }

@@ -180,6 +180,10 @@ impl<'a> Visitor<'a> for Extents<'a> {
             shape if leaf.complemented => bounds::of_image(&shape.complement_support(), to_model),
             shape => bounds::of_image(&shape.support(), to_model),
         };
+        // Shapes have a volume; here it was lost to rounding.
+        if bounds.min.cmpeq(bounds.max).any() {
+            return Err(Error::ExtentOutOfRange);
+        }
         if let Some(proofs) = &mut self.proofs {
             let item = Item::Shape(leaf.shape, leaf.complemented, Box::new(*to_shape));
             proofs.items.push(item);

@@ -1,7 +1,8 @@
-//! Simplification of a formula: constants folded, nested operators of one kind merged, repeated
-//! literals dropped, x ∩ ¬x and x ∪ ¬x recognised. One pass, near linear.
+//! Simplification of a formula: constants folded, nested operators of one kind merged, and what
+//! [`propagate`] finds decided by other parts of the formula dropped.
 
 use crate::lower::Token;
+use crate::propagate::propagate;
 use crate::{FormulaNode, Literal, PrimitiveId, Sense};
 
 /// A simplified formula.
@@ -31,7 +32,7 @@ struct Open {
     merged: usize,
     /// Child operators kept.
     operators: usize,
-    /// Where its literals begin in the list of literals.
+    /// Literals kept.
     literals: usize,
     /// A child decided it; the rest is skipped.
     decided: bool,
@@ -39,8 +40,37 @@ struct Open {
     skipped: usize,
 }
 
-/// Simplifies a token sequence; `intern` gives the primitive of a half-space and its sense.
+/// Rounds of propagation; a round without a change is the last. Each costs time linear in the
+/// formula, and the second rarely finds anything.
+const ROUNDS: usize = 4;
+
+/// Simplifies a token sequence; `of_half` gives the primitive of a half-space and its sense.
 pub(crate) fn simplify(tokens: &[Token], of_half: &[(PrimitiveId, Sense)]) -> Simplified {
+    let mut nodes = match fold(tokens, of_half) {
+        Simplified::Nodes(nodes) => nodes,
+        constant @ Simplified::Constant { .. } => return constant,
+    };
+    let itself = identity(of_half);
+    for _ in 0..ROUNDS {
+        let Some(tokens) = propagate(&nodes) else {
+            break;
+        };
+        nodes = match fold(&tokens, &itself) {
+            Simplified::Nodes(nodes) => nodes,
+            constant @ Simplified::Constant { .. } => return constant,
+        };
+    }
+    Simplified::Nodes(nodes)
+}
+
+/// The table for tokens that name primitives, not half-spaces.
+fn identity(of_half: &[(PrimitiveId, Sense)]) -> Vec<(PrimitiveId, Sense)> {
+    let ids = (0..).map(|id| (PrimitiveId(id), Sense::Inside));
+    ids.take(of_half.len()).collect()
+}
+
+/// Folds constants and merges operators.
+fn fold(tokens: &[Token], of_half: &[(PrimitiveId, Sense)]) -> Simplified {
     let mut builder = Builder::default();
     for token in tokens {
         builder.read(*token, of_half);
@@ -55,8 +85,6 @@ pub(crate) fn simplify(tokens: &[Token], of_half: &[(PrimitiveId, Sense)]) -> Si
 struct Builder {
     out: Vec<Entry>,
     open: Vec<Open>,
-    /// Places in the output of the literals of all open operators.
-    literals: Vec<usize>,
     /// Value of the whole formula, if it is constant.
     result: Option<bool>,
 }
@@ -93,7 +121,7 @@ impl Builder {
                     header: self.out.len(),
                     merged: 0,
                     operators: 0,
-                    literals: self.literals.len(),
+                    literals: 0,
                     decided: false,
                     skipped: 0,
                 });
@@ -111,7 +139,9 @@ impl Builder {
                     Sense::Inside => sense,
                     Sense::Outside => sense.complement(),
                 };
-                self.literals.push(self.out.len());
+                if let Some(top) = self.open.last_mut() {
+                    top.literals += 1;
+                }
                 self.out.push(Entry::Literal(Literal {
                     primitive,
                     sense,
@@ -134,27 +164,25 @@ impl Builder {
         let Some(top) = self.open.pop() else {
             return;
         };
-        let decided = top.decided || self.drop_repetitions(&top);
-        let kept = self.literals.len() - top.literals + top.operators;
-        if decided || kept == 0 {
+        let kept = top.literals + top.operators;
+        if top.decided || kept == 0 {
             self.out.truncate(top.header);
-            self.literals.truncate(top.literals);
-            self.constant(top.union == decided);
+            self.constant(top.union == top.decided);
             return;
         }
         if kept > 1 {
             self.out.push(Entry::Close);
-            self.literals.truncate(top.literals);
             if let Some(around) = self.open.last_mut() {
                 around.operators += 1;
             }
             return;
         }
-        // A lone child replaces its operator. A literal already stands in the list, now as
-        // one of the operator around.
+        // A lone child replaces its operator.
         self.out[top.header] = Entry::Gap;
         if top.operators == 1 {
             self.merge_lone_operator(top.header);
+        } else if let Some(around) = self.open.last_mut() {
+            around.literals += 1;
         }
     }
 
@@ -181,41 +209,10 @@ impl Builder {
                         self.out[at] = Entry::Gap;
                     }
                 }
-                Entry::Literal(_) if depth == 1 => self.literals.push(at),
+                Entry::Literal(_) if depth == 1 => around.literals += 1,
                 _ => {}
             }
         }
-    }
-
-    /// Drops literals that repeat an earlier one of the same operator; tells whether two are
-    /// complementary.
-    fn drop_repetitions(&mut self, top: &Open) -> bool {
-        let own = &mut self.literals[top.literals..];
-        let out = &mut self.out;
-        let literal = |out: &[Entry], at: usize| match out[at] {
-            Entry::Literal(literal) => Some((literal.primitive, literal.sense)),
-            _ => None,
-        };
-        own.sort_unstable_by_key(|&at| (literal(out, at), at));
-        let mut kept = 0;
-        let mut last = None;
-        for index in 0..own.len() {
-            let this = literal(out, own[index]);
-            if this == last {
-                out[own[index]] = Entry::Gap;
-                continue;
-            }
-            if let (Some((p, _)), Some((q, _))) = (this, last)
-                && p == q
-            {
-                return true;
-            }
-            last = this;
-            own[kept] = own[index];
-            kept += 1;
-        }
-        self.literals.truncate(top.literals + kept);
-        false
     }
 }
 

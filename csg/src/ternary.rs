@@ -140,7 +140,7 @@ fn close(
             FormulaNode::Literal(_) => return Ternary::Unknown,
         }
     } else {
-        let len = (out.len() - top.header - 1) as u32;
+        let len = u32::try_from(out.len() - top.header - 1).unwrap_or(u32::MAX);
         out[top.header] = if top.is_union {
             FormulaNode::Union { len }
         } else {
@@ -193,7 +193,7 @@ mod tests {
                 for child in children {
                     flatten(child, out);
                 }
-                let len = (out.len() - header - 1) as u32;
+                let len = u32::try_from(out.len() - header - 1).unwrap();
                 out[header] = if *is_union {
                     FormulaNode::Union { len }
                 } else {

@@ -181,3 +181,115 @@ pub(crate) fn apply_rows(rows: &Rows, point: DVec3) -> [f64; 4] {
 pub(crate) fn is_affine(rows: &Rows) -> bool {
     (0..3).all(|i| rows[i][3] == 0.0) && rows[3][3] > 0.0
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    fn rows() -> impl Strategy<Value = Rows> {
+        proptest::array::uniform4(proptest::array::uniform4(-2.0..2.0))
+    }
+
+    #[test]
+    fn both_conventions_mean_the_same() {
+        let columns = [
+            [1.0, 0.0, 0.0, 7.0],
+            [0.0, 2.0, 0.0, 8.0],
+            [0.0, 0.0, -1.0, 9.0],
+            [0.0, 0.0, 0.0, 1.0],
+        ];
+        let t = Transform::from_columns(&columns).unwrap();
+        assert_eq!(t.to_columns(), columns);
+        let image = t.apply(DVec3::ONE);
+        assert_eq!(image, Some(DVec3::new(8.0, 10.0, 8.0)));
+        assert!(t.is_affine());
+        assert_eq!(Transform::from_rows(&t.to_rows()), Ok(t));
+    }
+
+    #[test]
+    fn singular_and_infinite_matrices_are_refused() {
+        let flat = Transform::scale(DVec3::new(1.0, 1.0, 0.0));
+        assert_eq!(flat, Err(Error::SingularTransform));
+        // The last two rows are equal but for rounding.
+        let mut rows = IDENTITY;
+        rows[2] = [0.1, 0.2, 0.3, 0.0];
+        rows[1] = [0.1 * 3.0, 0.2 * 3.0, 0.3 * 3.0, 0.0];
+        assert_eq!(Transform::from_rows(&rows), Err(Error::SingularTransform));
+        rows[0][0] = f64::INFINITY;
+        assert!(matches!(
+            Transform::from_rows(&rows),
+            Err(Error::NonFinite { .. })
+        ));
+        assert!(Transform::translation(DVec3::NAN).is_err());
+        assert!(matches!(
+            Transform::rotation(DVec3::ZERO, 1.0),
+            Err(Error::ZeroVector { .. })
+        ));
+    }
+
+    #[test]
+    fn very_unequal_scales_are_not_singular() {
+        let t = Transform::scale(DVec3::new(1e-9, 1.0, 1e9)).unwrap();
+        assert!((t.inverse().to_rows()[0][0] * 1e-9 - 1.0).abs() < 1e-15);
+    }
+
+    #[test]
+    fn points_at_infinity_have_no_image() {
+        let mut rows = IDENTITY;
+        rows[0][3] = 1.0;
+        let t = Transform::from_rows(&rows).unwrap();
+        assert!(!t.is_affine());
+        assert_eq!(t.apply(-DVec3::X), None);
+        assert_eq!(t.apply(DVec3::X), Some(DVec3::X / 2.0));
+    }
+
+    #[test]
+    fn rotation_is_counter_clockwise() {
+        let t = Transform::rotation(DVec3::Z * 3.0, std::f64::consts::FRAC_PI_2).unwrap();
+        let image = t.apply(DVec3::X).unwrap();
+        assert!(image.abs_diff_eq(DVec3::Y, 1e-15));
+    }
+
+    proptest! {
+        #[test]
+        fn composition_does_one_after_the_other(a in rows(), b in rows(), p in proptest::array::uniform3(-1.0..1.0)) {
+            let (Ok(a), Ok(b)) = (Transform::from_rows(&a), Transform::from_rows(&b)) else {
+                return Ok(());
+            };
+            let p = DVec3::from(p);
+            if let (Some(both), Some(q)) = (a.compose(&b).unwrap().apply(p), a.apply(p).and_then(|q| b.apply(q))) {
+                prop_assert!(both.abs_diff_eq(q, 1e-9 * (1.0 + q.length() * q.length())));
+            }
+        }
+
+        /// The error bound holds against the inverse computed with twice the digits: one step
+        /// of Newton's method in exact products.
+        #[test]
+        fn the_inverse_is_within_its_bound(m in rows()) {
+            let Ok(t) = Transform::from_rows(&m) else {
+                return Ok(());
+            };
+            let Bounded { rows: x, error } = *t.bounded_inverse();
+            // X (2 − M X) − X = X (1 − M X), with 1 − M X accumulated without rounding error.
+            let residual: Rows = std::array::from_fn(|i| std::array::from_fn(|j| {
+                let (mut sum, mut rest) = (if i == j { 1.0 } else { 0.0 }, 0.0);
+                for k in 0..4 {
+                    let product = -m[i][k] * x[k][j];
+                    rest += (-m[i][k]).mul_add(x[k][j], -product);
+                    let next: f64 = sum + product;
+                    let part = next - sum;
+                    rest += (sum - (next - part)) + (product - part);
+                    sum = next;
+                }
+                sum + rest
+            }));
+            let correction = matrix::multiply(&x, &residual);
+            for i in 0..4 {
+                for j in 0..4 {
+                    prop_assert!(correction[i][j].abs() <= error[i][j], "{} > {}", correction[i][j], error[i][j]);
+                }
+            }
+        }
+    }
+}

@@ -34,7 +34,7 @@ impl Cell {
         }
         let tensors = problem.polynomials.iter().zip(0..).map(|(p, id)| {
             let tensor = Tensor::new(p, chart);
-            *work += 3 * tensor.work();
+            *work += tensor.work();
             (PrimitiveId(id), Rc::new(tensor))
         });
         Self {
@@ -82,14 +82,15 @@ impl Cell {
         result
     }
 
-    /// The axis along which the undecided polynomials change most.
+    /// The axis along which the undecided polynomials change most, relative to their own values,
+    /// weighted with the box's side: without that a polynomial that touches 0 would have the
+    /// box halved across it for ever.
     pub(super) fn liveliest_axis(&self) -> usize {
-        let mut sums = [0.0; 3];
+        let mut sums = DVec3::ZERO;
         for (_, tensor) in &self.active {
-            for (sum, variation) in sums.iter_mut().zip(tensor.variation()) {
-                *sum += variation;
-            }
+            sums += DVec3::from(tensor.variation());
         }
+        let sums = sums * (self.high - self.low);
         let steeper = |best: usize, axis: usize| if sums[axis] > sums[best] { axis } else { best };
         [0, 1].into_iter().fold(2, steeper)
     }
@@ -101,7 +102,7 @@ impl Cell {
         low.high[axis] = middle;
         high.low[axis] = middle;
         for (at, (_, tensor)) in self.active.iter().enumerate() {
-            *work += 8 + tensor.work();
+            *work += 8 + tensor.halving_work(axis);
             let [lower, upper] = tensor.halves(axis);
             low.active[at].1 = Rc::new(lower);
             high.active[at].1 = Rc::new(upper);

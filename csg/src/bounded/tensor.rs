@@ -56,10 +56,15 @@ impl Tensor {
         tensor
     }
 
-    /// Work that halving or building costs, in multiplications.
+    /// Multiplications that making it cost.
     pub(super) fn work(&self) -> u64 {
-        let degree: usize = self.degrees.iter().sum();
-        (self.coefficients.len() * (degree + 1)) as u64
+        let rows: usize = self.degrees.iter().map(|n| n + 1).sum();
+        (self.coefficients.len() * rows) as u64
+    }
+
+    /// Multiplications that halving it costs.
+    pub(super) fn halving_work(&self, axis: usize) -> u64 {
+        (self.coefficients.len() * (self.degrees[axis] + 4) / 2) as u64
     }
 
     /// Smallest and largest coefficient, which enclose the values over the box.

@@ -1,14 +1,12 @@
 //! Membership in a model by its definition, with closed formulas for the shapes, and random
 //! models: what the lowered solids are compared with.
 
-#![allow(dead_code, reason = "each test binary uses a part")]
-
 use csg::{Model, ModelBuilder, Node, NodeId, Polynomial, Shape, Transform};
 use glam::{DVec2, DVec3};
 use proptest::prelude::*;
 
 /// Whether a point lies in a model.
-pub fn contains(model: &Model, point: DVec3) -> bool {
+pub(crate) fn contains(model: &Model, point: DVec3) -> bool {
     node_contains(model, model.root(), point)
 }
 
@@ -32,7 +30,7 @@ fn node_contains(model: &Model, id: NodeId, point: DVec3) -> bool {
 }
 
 /// Whether a point lies in a shape, by its geometric definition.
-pub fn shape_contains(shape: &Shape, p: DVec3) -> bool {
+pub(crate) fn shape_contains(shape: &Shape, p: DVec3) -> bool {
     let across = p.truncate().length();
     let radius_at = |radii: [f64; 2], [z0, z1]: [f64; 2]| {
         radii[0] + (radii[1] - radii[0]) * (p.z - z0) / (z1 - z0)
@@ -64,7 +62,7 @@ pub fn shape_contains(shape: &Shape, p: DVec3) -> bool {
 }
 
 /// Points near one another: where they do not all agree, a boundary is near.
-pub fn near(point: DVec3, distance: f64) -> impl Iterator<Item = DVec3> {
+pub(crate) fn near(point: DVec3, distance: f64) -> impl Iterator<Item = DVec3> {
     let corner = move |at: usize| {
         let side = |axis: usize| {
             if at >> axis & 1 == 1 {
@@ -79,23 +77,19 @@ pub fn near(point: DVec3, distance: f64) -> impl Iterator<Item = DVec3> {
 }
 
 /// The value at a point, unless a boundary is near.
-pub fn clear_value(model: &Model, point: DVec3) -> Option<bool> {
+pub(crate) fn clear_value(model: &Model, point: DVec3) -> Option<bool> {
     let value = contains(model, point);
     near(point, 1e-7)
         .all(|p| contains(model, p) == value)
         .then_some(value)
 }
 
-pub fn number(low: f64, high: f64) -> impl Strategy<Value = f64> {
-    low..high
-}
-
-pub fn vector(low: f64, high: f64) -> impl Strategy<Value = DVec3> {
+pub(crate) fn vector(low: f64, high: f64) -> impl Strategy<Value = DVec3> {
     proptest::array::uniform3(low..high).prop_map(DVec3::from)
 }
 
 /// An octahedron with its faces wound at random.
-pub fn octahedron(flips: u8) -> Shape {
+pub(crate) fn octahedron(flips: u8) -> Shape {
     let vertices = [
         DVec3::X,
         -DVec3::X,
@@ -117,7 +111,7 @@ pub fn octahedron(flips: u8) -> Shape {
 }
 
 /// (x² + 9/4 y² + z² − 1)³ − x² z³ − 9/80 y² z³.
-pub fn heart() -> Polynomial {
+pub(crate) fn heart() -> Polynomial {
     let form = |terms: &[([usize; 3], f64)], degree| Polynomial::from_terms(degree, terms).unwrap();
     let round = form(
         &[
@@ -133,7 +127,7 @@ pub fn heart() -> Polynomial {
 }
 
 /// Bounded shapes of every kind, about one unit large.
-pub fn bounded_shape() -> impl Strategy<Value = Shape> {
+pub(crate) fn bounded_shape() -> impl Strategy<Value = Shape> {
     let size = || 0.3..1.5_f64;
     let ends = || (-1.0..0.0_f64, 0.2..1.0_f64);
     prop_oneof![
@@ -156,7 +150,7 @@ pub fn bounded_shape() -> impl Strategy<Value = Shape> {
 }
 
 /// Shapes that may be unbounded as well.
-pub fn any_shape() -> impl Strategy<Value = Shape> {
+pub(crate) fn any_shape() -> impl Strategy<Value = Shape> {
     let cubic = proptest::collection::vec(-1.0..1.0, 20)
         .prop_map(|c| Shape::Polynomial(Polynomial::new(3, c).unwrap()));
     let quadric = proptest::array::uniform4(proptest::array::uniform4(-1.0..1.0))
@@ -167,7 +161,7 @@ pub fn any_shape() -> impl Strategy<Value = Shape> {
 }
 
 /// Affine transforms, every second one mirroring, not too flat.
-pub fn affine() -> impl Strategy<Value = Transform> {
+pub(crate) fn affine() -> impl Strategy<Value = Transform> {
     let turn = (vector(-1.0, 1.0), -3.2..3.2_f64).prop_filter_map("zero axis", |(axis, angle)| {
         Transform::rotation(axis, angle).ok()
     });
@@ -187,7 +181,7 @@ pub fn affine() -> impl Strategy<Value = Transform> {
 }
 
 /// Projective transforms, some of which send planes near the origin to infinity.
-pub fn projective() -> impl Strategy<Value = Transform> {
+pub(crate) fn projective() -> impl Strategy<Value = Transform> {
     (affine(), vector(-0.7, 0.7)).prop_filter_map("singular", |(t, p)| {
         let mut rows = t.to_rows();
         for axis in 0..3 {
@@ -199,7 +193,7 @@ pub fn projective() -> impl Strategy<Value = Transform> {
 
 /// A tree to build a model from.
 #[derive(Clone, Debug)]
-pub enum Tree {
+pub(crate) enum Tree {
     Shape(Shape),
     Moved(Transform, Box<Tree>),
     Union(Vec<Tree>),
@@ -208,7 +202,7 @@ pub enum Tree {
     Complement(Box<Tree>),
 }
 
-pub fn tree(
+pub(crate) fn tree(
     shape: impl Strategy<Value = Shape> + 'static,
     transform: impl Strategy<Value = Transform> + 'static,
 ) -> impl Strategy<Value = Tree> {
@@ -227,7 +221,7 @@ pub fn tree(
     })
 }
 
-pub fn model(tree: &Tree) -> Model {
+pub(crate) fn model(tree: &Tree) -> Model {
     let mut builder = ModelBuilder::new();
     let root = add(&mut builder, tree);
     builder.finish(root)

@@ -1,10 +1,10 @@
 //! A lowered solid holds the same points as the model it was built from.
 
-mod oracle;
-
+use crate::oracle::{
+    self, affine, any_shape, bounded_shape, clear_value, model, projective, tree, vector,
+};
 use csg::{Aabb, Error, Solid};
 use glam::DVec3;
-use oracle::{affine, any_shape, bounded_shape, clear_value, model, projective, tree, vector};
 use proptest::prelude::*;
 
 const CLIP: Aabb = Aabb {
