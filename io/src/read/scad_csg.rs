@@ -1,0 +1,69 @@
+//! The OpenSCAD `.csg` dialect: dumps of evaluated OpenSCAD models, and a few exact shapes more.
+//!
+//! ```text
+//! file      := statement*
+//! statement := ';' | modifier* NAME '(' args? ')' ( ';' | '{' statement* '}' | statement )
+//! modifier  := '%' | '#' | '!' | '*'
+//! args      := arg (',' arg)*          arg := (NAME '=')? value
+//! value     := NUMBER | 'true' | 'false' | 'undef' | 'inf' | 'nan' | STRING | '[' (value (',' value)*)? ']'
+//! ```
+//! Nodes: `union group render intersection difference color multmatrix translate rotate scale
+//! mirror cube sphere cylinder` and convex `polyhedron`s, as OpenSCAD means them; of this project's own:
+//!
+//! | node | solid |
+//! |---|---|
+//! | `torus(r1 =, r2 =)` | about z, ring radius r1, tube radius r2 |
+//! | `halfspace(n = [a, b, c], d =)` | a·x + b·y + c·z ≤ d |
+//! | `quadric([[4×4]])` | \[x y z 1\] M \[x y z 1\]ᵀ ≤ 0 |
+//! | `polynomial("x^2 + y^2 - 1")` | expression ≤ 0; `+ - * / ^ ( )`, numbers, x, y, z |
+//! | `helicoid()` | the thesis' helicoid in the unit cylinder |
+//!
+//! Curved shapes are exact where OpenSCAD facets them, unless the author asked for few facets:
+//! see [`ReadOptions::facet_limit`]. What OpenSCAD accepts and drops, such as shapes without
+//! volume and singular matrices, is dropped with a warning. Nesting of any depth is read.
+
+mod arguments;
+mod ast;
+mod color;
+mod complaints;
+mod evaluate;
+mod motion;
+mod nodes;
+mod parse;
+mod polyhedron;
+mod program;
+mod shapes;
+mod token;
+
+use super::diagnostic::{Diagnostics, Source};
+use super::{ReadOptions, Reading};
+
+/// Reads a model from the text of a `.csg` file.
+///
+/// `name` stands for the file in complaints. A byte order mark is skipped.
+///
+/// ```
+/// use io::read::{ReadOptions, scad_csg};
+/// let text = "difference() { cube(2, center = true); sphere(r = 1.2); }";
+/// let reading = scad_csg::read(text, "hollow.csg", &ReadOptions::default())?;
+/// assert_eq!(reading.model.nodes().len(), 3);
+/// assert!(reading.warnings.is_empty());
+/// # Ok::<(), io::read::Diagnostics>(())
+/// ```
+///
+/// # Errors
+/// What keeps the file from being read, each with its place and a remedy: syntax errors, nodes
+/// that are unknown or not supported, wrong arguments, or a program instead of a dump.
+pub fn read(source: &str, name: &str, options: &ReadOptions) -> Result<Reading, Diagnostics> {
+    let places = Source::new(source, name);
+    if source.len() > token::MAX_BYTES {
+        let message = "the file is longer than 4 GiB";
+        return Err(places.diagnostic(0..0, message, None).into());
+    }
+    let ast = parse::parse(source, name, &places)?;
+    let (model, warnings) = evaluate::evaluate(source, &ast, &places, *options)?;
+    Ok(Reading { model, warnings })
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,186 @@
+//! The nodes that may stand in a file, and what becomes of each.
+
+/// What a node means to this reader.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub(super) enum Kind {
+    /// The union of its children, under whatever name.
+    Union,
+    /// What all its children have in common.
+    Intersection,
+    /// The first child without the others.
+    Difference,
+    /// Its children, moved.
+    Motion(Motion),
+    /// Its children, painted.
+    Color,
+    /// A shape without children.
+    Leaf(Leaf),
+    /// A plane figure: part of no solid unless something extrudes it.
+    Flat,
+    /// A node of OpenSCAD's that this reader has no exact solid for.
+    NotYet,
+}
+
+/// How children are moved.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub(super) enum Motion {
+    /// `multmatrix(m)`.
+    Matrix,
+    /// `translate(v)`.
+    Translate,
+    /// `rotate(a, v)`.
+    Rotate,
+    /// `scale(v)`.
+    Scale,
+    /// `mirror(v)`.
+    Mirror,
+}
+
+/// The shapes.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub(super) enum Leaf {
+    /// `cube(size, center)`.
+    Cube,
+    /// `sphere(r)`.
+    Sphere,
+    /// `cylinder(h, r1, r2, center)`.
+    Cylinder,
+    /// `polyhedron(points, faces)`.
+    Polyhedron,
+    /// `torus(r1, r2)`: ring radius, tube radius; about the z axis.
+    Torus,
+    /// `halfspace(n, d)`: n · (x, y, z) ≤ d.
+    HalfSpace,
+    /// `quadric(m)`: \[x y z 1\] M \[x y z 1\]ᵀ ≤ 0.
+    Quadric,
+    /// `polynomial(p)`: p ≤ 0.
+    Polynomial,
+    /// `helicoid()`, the bounded one of the thesis.
+    Helicoid,
+}
+
+/// A node's name, meaning and parameters, these in the order of positional arguments.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Entry {
+    pub(super) name: &'static str,
+    pub(super) kind: Kind,
+    pub(super) parameters: &'static [&'static str],
+}
+
+const fn entry(name: &'static str, kind: Kind, parameters: &'static [&'static str]) -> Entry {
+    Entry {
+        name,
+        kind,
+        parameters,
+    }
+}
+
+const fn leaf(name: &'static str, leaf: Leaf, parameters: &'static [&'static str]) -> Entry {
+    entry(name, Kind::Leaf(leaf), parameters)
+}
+
+const fn motion(name: &'static str, motion: Motion, parameters: &'static [&'static str]) -> Entry {
+    entry(name, Kind::Motion(motion), parameters)
+}
+
+/// All nodes: OpenSCAD's, then this project's additions.
+const ENTRIES: [Entry; 40] = [
+    entry("union", Kind::Union, &[]),
+    entry("group", Kind::Union, &[]),
+    entry("render", Kind::Union, &[]),
+    entry("intersection", Kind::Intersection, &[]),
+    entry("difference", Kind::Difference, &[]),
+    entry("color", Kind::Color, &["c", "alpha"]),
+    motion("multmatrix", Motion::Matrix, &["m"]),
+    motion("translate", Motion::Translate, &["v"]),
+    motion("rotate", Motion::Rotate, &["a", "v"]),
+    motion("scale", Motion::Scale, &["v"]),
+    motion("mirror", Motion::Mirror, &["v"]),
+    leaf("cube", Leaf::Cube, &["size", "center"]),
+    leaf("sphere", Leaf::Sphere, &["r", "d"]),
+    leaf(
+        "cylinder",
+        Leaf::Cylinder,
+        &["h", "r1", "r2", "center", "r", "d", "d1", "d2"],
+    ),
+    entry("square", Kind::Flat, &[]),
+    entry("circle", Kind::Flat, &[]),
+    entry("polygon", Kind::Flat, &[]),
+    entry("text", Kind::Flat, &[]),
+    entry("offset", Kind::Flat, &[]),
+    entry("projection", Kind::Flat, &[]),
+    entry("fill", Kind::Flat, &[]),
+    leaf(
+        "polyhedron",
+        Leaf::Polyhedron,
+        &["points", "faces", "triangles"],
+    ),
+    entry("linear_extrude", Kind::NotYet, &[]),
+    entry("rotate_extrude", Kind::NotYet, &[]),
+    entry("hull", Kind::NotYet, &[]),
+    entry("minkowski", Kind::NotYet, &[]),
+    entry("resize", Kind::NotYet, &[]),
+    entry("import", Kind::NotYet, &[]),
+    entry("surface", Kind::NotYet, &[]),
+    entry("roof", Kind::NotYet, &[]),
+    entry("glide", Kind::NotYet, &[]),
+    entry("subdiv", Kind::NotYet, &[]),
+    entry("dxf_linear_extrude", Kind::NotYet, &[]),
+    entry("dxf_rotate_extrude", Kind::NotYet, &[]),
+    entry("import_stl", Kind::NotYet, &[]),
+    leaf("torus", Leaf::Torus, &["r1", "r2"]),
+    leaf("halfspace", Leaf::HalfSpace, &["n", "d"]),
+    leaf("quadric", Leaf::Quadric, &["m"]),
+    leaf("polynomial", Leaf::Polynomial, &["p"]),
+    leaf("helicoid", Leaf::Helicoid, &[]),
+];
+
+/// The node of this name.
+pub(super) fn find(name: &str) -> Option<&'static Entry> {
+    ENTRIES.iter().find(|entry| entry.name == name)
+}
+
+/// What was probably meant by a name that does not exist.
+pub(super) fn nearest_node(name: &str) -> Option<&'static str> {
+    nearest(name, ENTRIES.iter().map(|entry| entry.name))
+}
+
+/// The candidate that a few typing errors make of `name`: one in three characters.
+pub(super) fn nearest(
+    name: &str,
+    candidates: impl IntoIterator<Item = &'static str>,
+) -> Option<&'static str> {
+    // Long names cost quadratic time and resemble nothing.
+    if name.len() > 64 {
+        return None;
+    }
+    let lower = name.to_ascii_lowercase();
+    candidates
+        .into_iter()
+        .map(|candidate| (strsim::osa_distance(&lower, candidate), candidate))
+        .filter(|(distance, candidate)| 3 * distance <= candidate.len().max(3))
+        .min_by_key(|(distance, _)| *distance)
+        .map(|(_, candidate)| candidate)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn names_are_unique() {
+        for entry in &ENTRIES {
+            let same = ENTRIES.iter().filter(|other| other.name == entry.name);
+            assert_eq!(same.count(), 1, "{}", entry.name);
+        }
+    }
+
+    #[test]
+    fn typing_errors_are_recognised_and_foreign_words_are_not() {
+        assert_eq!(nearest_node("cyllinder"), Some("cylinder"));
+        assert_eq!(nearest_node("Sphere"), Some("sphere"));
+        assert_eq!(nearest_node("diffrence"), Some("difference"));
+        assert_eq!(nearest_node("wheel_hub"), None);
+        assert_eq!(nearest("R", ["r", "d"]), Some("r"));
+    }
+}
