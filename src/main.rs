@@ -1,1 +1,60 @@
-fn main() {}
+//! `csg2brep`: constructive solid geometry to watertight meshes. See `csg2brep --help`.
+//!
+//! [`args`] is what was typed, [`run`] what it means, [`pipeline`] the stages; everything that is
+//! said goes through [`talk`], every failure through [`failure`].
+
+mod args;
+mod convert;
+mod excerpt;
+mod failure;
+mod input;
+mod memory;
+mod output;
+mod pipeline;
+mod progress;
+mod report;
+mod run;
+mod shell;
+mod summary;
+mod talk;
+mod values;
+mod view;
+
+use args::{Cli, Command};
+use clap::Parser as _;
+use failure::Failure;
+use run::Conversion;
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::process::ExitCode;
+use talk::Talk;
+
+fn main() -> ExitCode {
+    let cli = Cli::parse();
+    let talk = Talk::new(cli.talk);
+    progress::watch_interrupts();
+    // A panic is this program's fault; the message has been printed, files are whole or absent.
+    let outcome = catch_unwind(AssertUnwindSafe(|| dispatch(cli, talk)));
+    match outcome {
+        Ok(Ok(())) => ExitCode::SUCCESS,
+        Ok(Err(failure)) => {
+            talk.fail(&failure);
+            failure.exit_code()
+        }
+        Err(_) => {
+            let text = "the program stopped at the place above".to_owned();
+            let failure = Failure::Bug(text);
+            talk.fail(&failure);
+            failure.exit_code()
+        }
+    }
+}
+
+fn dispatch(cli: Cli, talk: Talk) -> Result<(), Failure> {
+    match cli.command {
+        None => convert::run(&Conversion::new(cli.convert)?, talk),
+        Some(Command::Convert(args)) => convert::run(&Conversion::new(args)?, talk),
+        Some(Command::View(args)) => view::run(args, talk),
+        Some(Command::Completions { shell }) => shell::completions(shell),
+        Some(Command::Man) => shell::manual(),
+    }
+}

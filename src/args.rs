@@ -1,0 +1,260 @@
+//! The command line as it is typed. [`run`](crate::run) turns it into what the program uses.
+
+use crate::values::{Bytes, PictureSize, Tolerance};
+use clap::{Args, Parser, Subcommand, ValueEnum};
+use clap_complete::Shell;
+use std::num::{NonZeroU64, NonZeroUsize};
+use std::path::PathBuf;
+
+const EXAMPLES: &str = "\
+Examples:
+  csg2brep part.csg -o part.glb                      one file, at 0.1% of the model's size
+  csg2brep part.csg -o part.stl -o part.obj --tolerance 0.01
+  csg2brep view part.csg -o part.png                 a picture
+
+An OpenSCAD program is evaluated first:
+  openscad -o part.csg part.scad";
+
+const EXIT_CODES: &str = "\
+Exit codes:
+  0    done
+  1    bad input, or a file that could not be read or written
+  2    bad usage
+  3    done, but not certified to the tolerance (only with --strict)
+  4    a limit was reached: cells, memory, or the model's size
+  130  interrupted";
+
+/// Constructive solid geometry to watertight meshes.
+#[derive(Parser, Debug)]
+#[command(
+    version,
+    override_usage = "csg2brep [OPTIONS] <IN> -o <FILE>...\n       csg2brep <COMMAND>",
+    before_help = EXAMPLES,
+    after_long_help = EXIT_CODES,
+    args_conflicts_with_subcommands = true,
+    subcommand_negates_reqs = true,
+    disable_help_subcommand = true
+)]
+pub(crate) struct Cli {
+    #[command(subcommand)]
+    pub(crate) command: Option<Command>,
+    #[command(flatten)]
+    pub(crate) convert: ConvertArgs,
+    #[command(flatten)]
+    pub(crate) talk: TalkArgs,
+}
+
+/// What to do, if it is not a plain conversion.
+#[derive(Subcommand, Debug)]
+pub(crate) enum Command {
+    /// Convert a model, as without a command
+    Convert(ConvertArgs),
+    /// Draw a picture of a model
+    View(ViewArgs),
+    /// Print a script that completes commands and options in a shell
+    Completions {
+        /// The shell
+        shell: Shell,
+    },
+    /// Print the manual page
+    Man,
+}
+
+/// How much is said, and how.
+#[derive(Args, Clone, Copy, Debug)]
+#[command(next_help_heading = "Messages")]
+pub(crate) struct TalkArgs {
+    /// Say nothing but errors
+    #[arg(short, long, global = true, conflicts_with = "verbose")]
+    pub(crate) quiet: bool,
+    /// Say more: stages with their times, counts, places that are not certified
+    #[arg(short, long, global = true)]
+    pub(crate) verbose: bool,
+    /// When to use colours; NO_COLOR is honoured
+    #[arg(long, global = true, value_name = "WHEN", default_value = "auto")]
+    pub(crate) color: ColorChoice,
+}
+
+/// When to use colours.
+#[derive(ValueEnum, Clone, Copy, PartialEq, Eq, Debug)]
+pub(crate) enum ColorChoice {
+    /// On a terminal
+    Auto,
+    /// Always
+    Always,
+    /// Never
+    Never,
+}
+
+/// Input, output and precision of a conversion.
+#[derive(Args, Debug)]
+pub(crate) struct ConvertArgs {
+    /// The model to read; `-` is standard input
+    // An option only in type: clap cannot know that there is no command when it fills this in.
+    #[arg(value_name = "IN", required = true)]
+    pub(crate) input: Option<PathBuf>,
+    #[command(flatten)]
+    pub(crate) model: ModelArgs,
+    /// The file to write; its extension tells the format. Repeat it for several formats.
+    /// `-` is standard output and needs --to
+    #[arg(short, long = "output", value_name = "FILE")]
+    pub(crate) outputs: Vec<PathBuf>,
+    /// The format of the output, whatever its extension
+    #[arg(long, value_name = "FORMAT", requires = "outputs")]
+    pub(crate) to: Option<OutputFormat>,
+    /// The format of the input, whatever its content and extension
+    #[arg(long, value_name = "FORMAT", hide_short_help = true)]
+    pub(crate) from: Option<InputFormat>,
+    /// Write what was done and measured as JSON; `-` is standard output
+    #[arg(long, value_name = "FILE")]
+    pub(crate) report: Option<PathBuf>,
+    /// Fail on warnings (1), and when the result is not certified to the tolerance (3)
+    #[arg(long)]
+    pub(crate) strict: bool,
+}
+
+/// What the model means and how finely to convert it.
+#[derive(Args, Debug)]
+pub(crate) struct ModelArgs {
+    /// The largest distance from the true boundary: a length in model units, or a percentage of
+    /// the bounding box's diagonal [default: 0.1%]
+    #[arg(short, long, value_name = "LENGTH", help_heading = "Precision")]
+    pub(crate) tolerance: Option<Tolerance>,
+    /// Subdivide to this level everywhere instead; three levels halve the cells
+    #[arg(
+        long,
+        value_name = "N",
+        conflicts_with = "tolerance",
+        help_heading = "Precision",
+        value_parser = clap::value_parser!(u8).range(0..=i64::from(subdiv::MAX_LEVEL))
+    )]
+    pub(crate) level: Option<u8>,
+    /// Deepest level that a tolerance may lead to [default: where cells are as small as it]
+    #[arg(
+        long,
+        value_name = "N",
+        conflicts_with = "level",
+        hide_short_help = true,
+        help_heading = "Precision",
+        value_parser = clap::value_parser!(u8).range(0..=i64::from(subdiv::MAX_LEVEL))
+    )]
+    pub(crate) max_level: Option<u8>,
+    /// How polynomials are bounded
+    #[arg(
+        long,
+        value_name = "NAME",
+        default_value = "bezier",
+        hide_short_help = true,
+        help_heading = "Precision"
+    )]
+    pub(crate) criterion: Criterion,
+    /// Clip the model to this box; needed if it is unbounded
+    #[arg(
+        long = "box",
+        num_args = 6,
+        allow_negative_numbers = true,
+        value_names = ["XMIN", "YMIN", "ZMIN", "XMAX", "YMAX", "ZMAX"],
+        help_heading = "Model"
+    )]
+    pub(crate) clip: Option<Vec<f64>>,
+    /// Cylinders and spheres with $fn from 1 to N are the prisms and polyhedra that OpenSCAD
+    /// makes of them; with more they are round. 0 makes everything round
+    #[arg(
+        long,
+        value_name = "N",
+        default_value_t = 16,
+        hide_short_help = true,
+        help_heading = "Model"
+    )]
+    pub(crate) facet_limit: u32,
+    /// Highest degree of a polynomial
+    #[arg(
+        long,
+        value_name = "N",
+        default_value_t = 64,
+        hide_short_help = true,
+        help_heading = "Limits",
+        value_parser = clap::value_parser!(u8).range(1..=64)
+    )]
+    pub(crate) max_degree: u8,
+    /// Most cells on the boundary
+    #[arg(
+        long,
+        value_name = "N",
+        default_value = "100000000",
+        hide_short_help = true,
+        help_heading = "Limits"
+    )]
+    pub(crate) max_cells: NonZeroU64,
+    /// Most memory, such as 4G [default: three quarters of the machine's]
+    #[arg(long, value_name = "BYTES", help_heading = "Limits")]
+    pub(crate) memory: Option<Bytes>,
+    /// Number of threads [default: one for each core]; the result is the same for any
+    #[arg(long, value_name = "N", help_heading = "Limits")]
+    pub(crate) threads: Option<NonZeroUsize>,
+}
+
+/// A model, a picture and a point of view.
+#[derive(Args, Debug)]
+pub(crate) struct ViewArgs {
+    /// The model to read; `-` is standard input
+    #[arg(value_name = "IN")]
+    pub(crate) input: PathBuf,
+    #[command(flatten)]
+    pub(crate) model: ModelArgs,
+    /// The PNG picture to write; `-` is standard output
+    #[arg(short, long, value_name = "FILE")]
+    pub(crate) output: PathBuf,
+    /// Width and height in pixels
+    #[arg(long, value_name = "WxH", default_value = "1200x900")]
+    pub(crate) size: PictureSize,
+    /// Where the viewer stands
+    #[arg(long, value_name = "SIDE", default_value = "iso")]
+    pub(crate) from: Side,
+}
+
+/// Where the viewer of a picture stands.
+#[derive(ValueEnum, Clone, Copy, PartialEq, Eq, Debug)]
+pub(crate) enum Side {
+    /// In front, to the right and above
+    Iso,
+    /// At -y
+    Front,
+    /// At +y
+    Back,
+    /// At -x
+    Left,
+    /// At +x
+    Right,
+    /// At +z
+    Top,
+    /// At -z
+    Bottom,
+}
+
+/// How polynomials are bounded in a simplex.
+#[derive(ValueEnum, Clone, Copy, PartialEq, Eq, Debug)]
+pub(crate) enum Criterion {
+    /// By their Bézier coefficients
+    Bezier,
+    /// By Rivlin's sharper bound
+    Rivlin,
+}
+
+/// Formats that can be read.
+#[derive(ValueEnum, Clone, Copy, PartialEq, Eq, Debug)]
+pub(crate) enum InputFormat {
+    /// Flat CSG dump of OpenSCAD, with exact shapes added
+    Csg,
+}
+
+/// Formats that can be written.
+#[derive(ValueEnum, Clone, Copy, PartialEq, Eq, Debug)]
+pub(crate) enum OutputFormat {
+    /// Wavefront OBJ
+    Obj,
+    /// Binary glTF
+    Glb,
+    /// Binary STL
+    Stl,
+}

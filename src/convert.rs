@@ -1,0 +1,126 @@
+//! `csg2brep IN -o OUT`: convert, write, report.
+
+use crate::failure::Failure;
+use crate::memory;
+use crate::output;
+use crate::pipeline::{self, Boundary};
+use crate::progress::Progress;
+use crate::report::{InputReport, Report};
+use crate::run::{Conversion, Job, Target};
+use crate::summary::{grouped, summary};
+use crate::talk::Talk;
+use std::time::Instant;
+
+/// Converts, writes all outputs and the report, and says what came out.
+pub(crate) fn run(conversion: &Conversion, talk: Talk) -> Result<(), Failure> {
+    let start = Instant::now();
+    let mut report = new_report(&conversion.job);
+    let result = convert(conversion, talk, &mut report);
+    report.total_seconds = start.elapsed().as_secs_f64();
+    report.peak_memory_bytes = memory::peak_bytes();
+    report.error = result.as_ref().err().map(ToString::to_string);
+    // A report of a failed run tells how far it came; the failure itself matters more.
+    let reported = match &conversion.report {
+        Some(target) => write_report(&report, target),
+        None => Ok(()),
+    };
+    result?;
+    reported?;
+
+    talk.explain(|| details(&report));
+    let names: Vec<String> = conversion.outputs.iter().map(|o| o.target.name()).collect();
+    talk.say(&summary(&report, &names));
+    if conversion.strict && report.uncertified_count > 0 {
+        return Err(Failure::NotCertified(format!(
+            "{} cells are not certified to the tolerance (--strict)",
+            grouped(report.uncertified_count)
+        )));
+    }
+    Ok(())
+}
+
+/// A report of a job that has not begun.
+pub(crate) fn new_report(job: &Job) -> Report {
+    let input = InputReport {
+        name: job.input.name(),
+        format: None,
+    };
+    Report::new(input, job.report())
+}
+
+fn convert(conversion: &Conversion, talk: Talk, report: &mut Report) -> Result<(), Failure> {
+    let progress = Progress::new(talk.is_quiet());
+    let Conversion { job, from, .. } = conversion;
+    let boundary = pipeline::run(job, *from, talk, &progress, report)?;
+    if conversion.strict && !report.warnings.is_empty() {
+        let count = report.warnings.len();
+        let text = format!("{count} warnings are errors (--strict); nothing was written");
+        return Err(Failure::BadInput(text));
+    }
+    progress.begin("writing");
+    let remarks = report.timed("writing", || write(conversion, &boundary))?;
+    for remark in remarks {
+        progress.hidden_while(|| talk.warn(&remark));
+        report.warnings.push(remark);
+    }
+    Ok(())
+}
+
+fn write(conversion: &Conversion, boundary: &Boundary) -> Result<Vec<String>, Failure> {
+    let mut remarks = Vec::new();
+    for output in &conversion.outputs {
+        let remark = output::write(output, boundary)?;
+        remarks.extend(remark.map(|text| format!("{}: {text}", output.target.name())));
+    }
+    Ok(remarks)
+}
+
+fn write_report(report: &Report, target: &Target) -> Result<(), Failure> {
+    let json = report
+        .to_json()
+        .map_err(|error| Failure::Bug(error.to_string()))?;
+    output::write_bytes(target, json.as_bytes())
+}
+
+/// Stages with their times, counts, and places without proof.
+fn details(report: &Report) -> String {
+    let mut lines: Vec<String> = Vec::new();
+    for stage in &report.stages {
+        lines.push(format!("{:>12}: {:.3} s", stage.name, stage.seconds));
+    }
+    let counts = &report.counts;
+    lines.push(format!(
+        "{:>12}: {} leaves, {} bisections",
+        "cells",
+        grouped(counts.leaves),
+        grouped(counts.bisections)
+    ));
+    lines.push(format!(
+        "{:>12}: {} faces, {} edges, {} vertices",
+        "boundary",
+        grouped(counts.brep_faces),
+        grouped(counts.brep_edges),
+        grouped(counts.brep_vertices)
+    ));
+    if let Some(bytes) = report.peak_memory_bytes {
+        lines.push(format!("{:>12}: {} MiB", "memory", grouped(bytes >> 20)));
+    }
+    for pair in &report.nearly_equal_primitives {
+        let [a, b] = pair.primitives;
+        let difference = pair.difference;
+        lines.push(format!(
+            "surfaces {a} and {b} are nearly equal (difference {difference:e})"
+        ));
+    }
+    for place in report.uncertified.iter().take(LISTED_PLACES) {
+        let [x, y, z] = place.position;
+        let (size, reason) = (place.size, place.reason);
+        lines.push(format!(
+            "not certified: near ({x}, {y}, {z}), size {size:.3e}, {reason}"
+        ));
+    }
+    lines.join("\n")
+}
+
+/// The report lists more of them.
+const LISTED_PLACES: usize = 20;

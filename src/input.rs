@@ -1,0 +1,106 @@
+//! From a file or standard input to a model.
+
+use crate::args::InputFormat;
+use crate::failure::Failure;
+use io::read::format::{Format, sniff};
+use io::read::{Diagnostic, ReadOptions, Reading, decode, scad_csg};
+use std::io::Read as _;
+use std::path::{Path, PathBuf};
+
+/// Where the model comes from.
+#[derive(Clone, PartialEq, Eq, Debug)]
+pub(crate) enum Input {
+    /// Standard input.
+    Stdin,
+    /// A file.
+    File(PathBuf),
+}
+
+/// A model and what there is to say about its text.
+pub(crate) struct Loaded {
+    pub(crate) model: csg::Model,
+    pub(crate) format: Format,
+    /// The text, for excerpts in warnings.
+    pub(crate) source: String,
+    pub(crate) warnings: Vec<Diagnostic>,
+}
+
+impl Input {
+    /// `-` is standard input.
+    pub(crate) fn new(path: PathBuf) -> Self {
+        if path == Path::new("-") {
+            Self::Stdin
+        } else {
+            Self::File(path)
+        }
+    }
+
+    /// The name for messages.
+    pub(crate) fn name(&self) -> String {
+        match self {
+            Self::Stdin => "<stdin>".to_owned(),
+            Self::File(path) => path.display().to_string(),
+        }
+    }
+
+    /// Reads the model.
+    pub(crate) fn load(
+        &self,
+        format: Option<InputFormat>,
+        options: ReadOptions,
+    ) -> Result<Loaded, Failure> {
+        let name = self.name();
+        let bytes = self.bytes()?;
+        // Wide text would pass for a binary file of unknown format; reading it tells better.
+        let format = match format {
+            Some(InputFormat::Csg) => Format::ScadCsg,
+            None => match sniff(&bytes, &name) {
+                Ok(format) => format,
+                Err(unreadable) => {
+                    decode::decode(bytes, &name).map_err(from_decoding)?;
+                    return Err(Failure::BadInput(format!("{name}: {unreadable}")));
+                }
+            },
+        };
+        let source = decode::decode(bytes, &name).map_err(from_decoding)?;
+        let reading = match format {
+            Format::ScadCsg => scad_csg::read(&source, &name, &options),
+            _ => return Err(Failure::Bug(format!("no reader for {}", format.name()))),
+        };
+        match reading {
+            Ok(Reading { model, warnings }) => Ok(Loaded {
+                model,
+                format,
+                source,
+                warnings,
+            }),
+            Err(diagnostics) => Err(Failure::Diagnostics {
+                diagnostics,
+                source,
+            }),
+        }
+    }
+
+    fn bytes(&self) -> Result<Vec<u8>, Failure> {
+        let failed = |cause| Failure::File {
+            action: "read",
+            path: self.name().into(),
+            cause,
+        };
+        match self {
+            Self::Stdin => {
+                let mut bytes = Vec::new();
+                let read = std::io::stdin().lock().read_to_end(&mut bytes);
+                read.map(|_| bytes).map_err(failed)
+            }
+            Self::File(path) => std::fs::read(path).map_err(failed),
+        }
+    }
+}
+
+fn from_decoding(wrong: Diagnostic) -> Failure {
+    Failure::Diagnostics {
+        diagnostics: wrong.into(),
+        source: String::new(),
+    }
+}

@@ -1,0 +1,94 @@
+//! Meshes and bytes to files and standard output.
+
+use crate::args::OutputFormat;
+use crate::failure::Failure;
+use crate::pipeline::Boundary;
+use crate::run::{Output, Target};
+use csg::Material;
+use io::write::{Error, atomic, gltf, obj, stl};
+use std::io::{BufWriter, Write};
+use std::path::Path;
+
+/// Writes a boundary; a failed run leaves the old file as it was. Returns what the user should
+/// know about the file.
+pub(crate) fn write(output: &Output, boundary: &Boundary) -> Result<Option<String>, Failure> {
+    let library = match (output.format, &output.target) {
+        (OutputFormat::Obj, Target::File(path)) if is_painted(&boundary.materials) => {
+            Some(path.with_extension("mtl"))
+        }
+        _ => None,
+    };
+    let mut remark = None;
+    let reference = library.as_deref().and_then(Path::file_name);
+    let reference = reference.map(|name| name.to_string_lossy().into_owned());
+    to_target(&output.target, |out| {
+        remark = mesh(output.format, boundary, reference, out)?;
+        Ok(())
+    })?;
+    if let Some(library) = library {
+        let Boundary {
+            brep, materials, ..
+        } = boundary;
+        let target = Target::File(library);
+        to_target(&target, |mut out| {
+            obj::write_materials(brep, materials, &mut out)
+        })?;
+    }
+    Ok(remark)
+}
+
+/// Writes bytes that are all there already.
+pub(crate) fn write_bytes(target: &Target, bytes: &[u8]) -> Result<(), Failure> {
+    to_target(target, |out| Ok(out.write_all(bytes)?))
+}
+
+/// Writes a file beside its target and renames it, or writes to standard output.
+pub(crate) fn to_target(
+    target: &Target,
+    contents: impl FnOnce(&mut dyn Write) -> Result<(), Error>,
+) -> Result<(), Failure> {
+    let result = match target {
+        Target::Stdout => {
+            let mut out = BufWriter::new(std::io::stdout().lock());
+            contents(&mut out).and_then(|()| Ok(out.flush()?))
+        }
+        Target::File(path) => atomic::write(path, |out| contents(out)),
+    };
+    result.map_err(|error| Failure::from_writer(&target.name(), error))
+}
+
+fn mesh(
+    format: OutputFormat,
+    boundary: &Boundary,
+    material_library: Option<String>,
+    mut out: &mut dyn Write,
+) -> Result<Option<String>, Error> {
+    let Boundary {
+        brep, materials, ..
+    } = boundary;
+    match format {
+        OutputFormat::Obj => {
+            let options = obj::Options {
+                material_library,
+                ..obj::Options::default()
+            };
+            obj::write(brep, &options, &mut out)?;
+        }
+        OutputFormat::Glb => gltf::write(brep, materials, &gltf::Options::default(), &mut out)?,
+        OutputFormat::Stl => {
+            let outcome = stl::write(brep, &mut out)?;
+            if let stl::Welding::Broken { .. } = outcome.welding {
+                let text = "the 32-bit numbers of STL make different vertices equal: programs that \
+                            join equal vertices will not find the mesh closed; GLB and OBJ have no \
+                            such problem";
+                return Ok(Some(text.to_owned()));
+            }
+        }
+    }
+    Ok(None)
+}
+
+/// Whether any part has a colour.
+fn is_painted(materials: &[Material]) -> bool {
+    materials.iter().any(|material| material.color.is_some())
+}

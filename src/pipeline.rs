@@ -1,0 +1,103 @@
+//! The stages in order: text, model, solid, fragments, boundary.
+
+use crate::args::InputFormat;
+use crate::failure::Failure;
+use crate::input::Loaded;
+use crate::progress::{self, Progress};
+use crate::report::Report;
+use crate::run::Job;
+use crate::talk::Talk;
+use brep::simplify::remove_degenerate;
+use brep::{Brep, Groups, Properties, Shells, Valid};
+use csg::{Material, Solid};
+use subdiv::{Fragments, Rule};
+
+/// A solid's boundary, ready to be written.
+pub(crate) struct Boundary {
+    pub(crate) brep: Valid<Brep>,
+    pub(crate) materials: Vec<Material>,
+}
+
+/// Runs all stages; `report` learns what each one did, also when a later one fails.
+pub(crate) fn run(
+    job: &Job,
+    from: Option<InputFormat>,
+    talk: Talk,
+    progress: &Progress,
+    report: &mut Report,
+) -> Result<Boundary, Failure> {
+    progress.begin("reading");
+    let loaded = report.timed("reading", || job.input.load(from, job.read))?;
+    report.input.format = Some(loaded.format.name());
+    progress.hidden_while(|| warn(&loaded, talk, report));
+
+    progress.begin("preparing");
+    let solid = report.timed("preparing", || Solid::build(&loaded.model, job.clip));
+    let solid = solid.map_err(|error| Failure::from(error).of_input(&job.input.name()))?;
+    drop(loaded);
+    report.add_solid(&solid);
+
+    let fragments = subdivide(&solid, job, progress, report)?;
+    stop_if_interrupted()?;
+
+    progress.begin("stitching");
+    let brep = report.timed("stitching", || stitch(&fragments))?;
+    drop(fragments);
+    stop_if_interrupted()?;
+
+    progress.begin("measuring");
+    let (groups, shells, properties) = report.timed("measuring", || {
+        (Groups::of(&brep), Shells::of(&brep), Properties::of(&brep))
+    });
+    report.add_boundary(&brep, &groups, &shells, &properties);
+    Ok(Boundary {
+        brep,
+        materials: solid.materials,
+    })
+}
+
+fn warn(loaded: &Loaded, talk: Talk, report: &mut Report) {
+    for warning in &loaded.warnings {
+        talk.warn_about(warning, &loaded.source);
+        report.warnings.push(warning.to_string());
+    }
+}
+
+fn subdivide(
+    solid: &Solid,
+    job: &Job,
+    progress: &Progress,
+    report: &mut Report,
+) -> Result<Fragments, Failure> {
+    if solid.primitives.is_empty() {
+        return Ok(Fragments::default());
+    }
+    let settings = job.settings(solid.extent.diagonal());
+    if let Rule::Tolerance(tolerance) = settings.rule {
+        report.settings.tolerance = Some(tolerance);
+    }
+    let outcome = subdiv::convert(solid, &settings, progress);
+    let outcome = outcome.map_err(|error| Failure::from(error).of_input(&job.input.name()))?;
+    report.add_subdivision(&outcome.report);
+    Ok(outcome.fragments)
+}
+
+/// A subdivision that does not close is this program's fault, never the model's.
+fn stitch(fragments: &Fragments) -> Result<Valid<Brep>, Failure> {
+    let stitched = brep::stitch(fragments).map_err(|error| match error {
+        brep::Error::TooManyTriangles { .. } => Failure::Limit(error.to_string()),
+        _ => Failure::Bug(error.to_string()),
+    })?;
+    let bug = |defects: brep::Defects| Failure::Bug(defects.to_string());
+    let valid = stitched.validate().map_err(bug)?;
+    let (clean, _) = remove_degenerate(valid).map_err(bug)?;
+    Ok(clean)
+}
+
+fn stop_if_interrupted() -> Result<(), Failure> {
+    if progress::cancelled() {
+        Err(Failure::Cancelled)
+    } else {
+        Ok(())
+    }
+}

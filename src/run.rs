@@ -1,0 +1,290 @@
+//! What the program uses: the command line, checked and resolved. Nothing later looks at flags.
+
+use crate::args::{self, ConvertArgs, ModelArgs, OutputFormat};
+use crate::failure::Failure;
+use crate::input::Input;
+use crate::memory;
+use crate::report::SettingsReport;
+use crate::values::{Bytes, Tolerance};
+use csg::Aabb;
+use glam::DVec3;
+use io::read::ReadOptions;
+use std::path::{Path, PathBuf};
+
+/// Where a file goes.
+#[derive(Clone, PartialEq, Eq, Debug)]
+pub(crate) enum Target {
+    /// Standard output.
+    Stdout,
+    /// A file, replaced when it is complete.
+    File(PathBuf),
+}
+
+/// A mesh to write.
+#[derive(Clone, PartialEq, Eq, Debug)]
+pub(crate) struct Output {
+    pub(crate) target: Target,
+    pub(crate) format: OutputFormat,
+}
+
+/// A model and how to subdivide it.
+#[derive(Clone, Debug)]
+pub(crate) struct Job {
+    pub(crate) input: Input,
+    pub(crate) read: ReadOptions,
+    pub(crate) clip: Option<Aabb>,
+    pub(crate) precision: Precision,
+    pub(crate) max_level: Option<u8>,
+    pub(crate) criterion: subdiv::Criterion,
+    pub(crate) threads: Option<usize>,
+    pub(crate) max_cells: u64,
+    pub(crate) max_memory_bytes: u64,
+}
+
+/// When subdivision ends.
+#[derive(Clone, Copy, PartialEq, Debug)]
+pub(crate) enum Precision {
+    Tolerance(Tolerance),
+    Level(u8),
+}
+
+/// A conversion.
+#[derive(Clone, Debug)]
+pub(crate) struct Conversion {
+    pub(crate) job: Job,
+    pub(crate) from: Option<args::InputFormat>,
+    pub(crate) outputs: Vec<Output>,
+    pub(crate) report: Option<Target>,
+    pub(crate) strict: bool,
+}
+
+/// Memory allowed where the machine does not tell how much it has.
+const FALLBACK_MEMORY: u64 = 4 << 30;
+
+impl Target {
+    /// `-` is standard output.
+    pub(crate) fn new(path: PathBuf) -> Self {
+        if path == Path::new("-") {
+            Self::Stdout
+        } else {
+            Self::File(path)
+        }
+    }
+
+    /// The name for messages.
+    pub(crate) fn name(&self) -> String {
+        match self {
+            Self::Stdout => "<stdout>".to_owned(),
+            Self::File(path) => path.display().to_string(),
+        }
+    }
+}
+
+impl Job {
+    pub(crate) fn new(input: PathBuf, args: &ModelArgs) -> Result<Self, Failure> {
+        let memory = args.memory.map(|Bytes(bytes)| bytes).or_else(|| {
+            let physical = memory::physical_bytes()?;
+            Some(physical / 4 * 3)
+        });
+        Ok(Self {
+            input: Input::new(input),
+            read: ReadOptions {
+                facet_limit: args.facet_limit,
+                max_degree: args.max_degree,
+            },
+            clip: args.clip.as_deref().map(clip_box).transpose()?,
+            precision: match args.level {
+                Some(level) => Precision::Level(level),
+                None => Precision::Tolerance(args.tolerance.unwrap_or_default()),
+            },
+            max_level: args.max_level,
+            criterion: match args.criterion {
+                args::Criterion::Bezier => subdiv::Criterion::Bezier,
+                args::Criterion::Rivlin => subdiv::Criterion::Rivlin,
+            },
+            threads: args.threads.map(usize::from),
+            max_cells: args.max_cells.get(),
+            max_memory_bytes: memory.unwrap_or(FALLBACK_MEMORY),
+        })
+    }
+
+    /// The settings of a subdivision of a solid whose extent has this diagonal.
+    pub(crate) fn settings(&self, diagonal: f64) -> subdiv::Settings {
+        let rule = match self.precision {
+            Precision::Level(level) => subdiv::Rule::Level(level),
+            Precision::Tolerance(tolerance) => subdiv::Rule::Tolerance(tolerance.length(diagonal)),
+        };
+        subdiv::Settings {
+            max_level: self.max_level,
+            criterion: self.criterion,
+            threads: self.threads,
+            max_cells: self.max_cells,
+            max_memory_bytes: self.max_memory_bytes,
+            ..subdiv::Settings::new(rule)
+        }
+    }
+
+    /// The settings for the report; the tolerance is not known yet if it is relative.
+    pub(crate) fn report(&self) -> SettingsReport {
+        let (tolerance, level) = match self.precision {
+            Precision::Tolerance(Tolerance::Length(length)) => (Some(length), None),
+            Precision::Tolerance(Tolerance::OfDiagonal(_)) => (None, None),
+            Precision::Level(level) => (None, Some(level)),
+        };
+        let clip = self.clip.map(|clip| {
+            let ([a, b, c], [d, e, f]) = (clip.min.to_array(), clip.max.to_array());
+            [a, b, c, d, e, f]
+        });
+        SettingsReport {
+            tolerance,
+            level,
+            max_level: self.max_level,
+            criterion: match self.criterion {
+                subdiv::Criterion::Rivlin => "rivlin",
+                subdiv::Criterion::Bezier => "bezier",
+            },
+            clip,
+            facet_limit: self.read.facet_limit,
+            max_degree: self.read.max_degree,
+            max_cells: self.max_cells,
+            max_memory_bytes: self.max_memory_bytes,
+            threads: self.threads,
+        }
+    }
+}
+
+impl Conversion {
+    pub(crate) fn new(args: ConvertArgs) -> Result<Self, Failure> {
+        let Some(input) = args.input else {
+            return Err(Failure::Usage("no input".to_owned()));
+        };
+        if args.outputs.is_empty() && args.report.is_none() {
+            let text = "nothing to write: name an output, as in -o part.glb";
+            return Err(Failure::Usage(text.to_owned()));
+        }
+        let to = args.to;
+        let outputs = args.outputs.into_iter().map(|path| output(path, to));
+        let outputs = outputs.collect::<Result<Vec<_>, _>>()?;
+        let report = args.report.map(Target::new);
+        let job = Job::new(input, &args.model)?;
+        let targets: Vec<&Target> = outputs.iter().map(|o| &o.target).chain(&report).collect();
+        check_targets(&job.input, &targets)?;
+        Ok(Self {
+            job,
+            from: args.from,
+            outputs,
+            report,
+            strict: args.strict,
+        })
+    }
+}
+
+/// Six finite numbers, the first three below the last three.
+fn clip_box(numbers: &[f64]) -> Result<Aabb, Failure> {
+    let wrong = |why: &str| Failure::Usage(format!("--box: {why}"));
+    let &[a, b, c, d, e, f] = numbers else {
+        return Err(wrong("six numbers are needed"));
+    };
+    let (min, max) = (DVec3::new(a, b, c), DVec3::new(d, e, f));
+    if !(min.is_finite() && max.is_finite()) {
+        return Err(wrong("all numbers must be finite"));
+    }
+    for (axis, name) in ["X", "Y", "Z"].into_iter().enumerate() {
+        if min[axis] >= max[axis] {
+            let (low, high) = (min[axis], max[axis]);
+            return Err(wrong(&format!(
+                "{name}MIN must be below {name}MAX, found {low} and {high}"
+            )));
+        }
+    }
+    Ok(Aabb { min, max })
+}
+
+fn output(path: PathBuf, to: Option<OutputFormat>) -> Result<Output, Failure> {
+    let target = Target::new(path);
+    let format = match (&target, to) {
+        (_, Some(format)) => format,
+        (Target::Stdout, None) => {
+            let text = "standard output needs a format: --to obj, --to glb or --to stl";
+            return Err(Failure::Usage(text.to_owned()));
+        }
+        (Target::File(path), None) => {
+            let extension = path
+                .extension()
+                .map(|e| e.to_string_lossy().to_ascii_lowercase());
+            match extension.as_deref() {
+                Some("obj") => OutputFormat::Obj,
+                Some("glb") => OutputFormat::Glb,
+                Some("stl") => OutputFormat::Stl,
+                _ => {
+                    return Err(Failure::Usage(format!(
+                        "{}: no format has this extension (known: .obj, .glb, .stl; or choose one with --to)",
+                        path.display()
+                    )));
+                }
+            }
+        }
+    };
+    Ok(Output { target, format })
+}
+
+/// No two files may be one, nor the input be overwritten.
+pub(crate) fn check_targets(input: &Input, targets: &[&Target]) -> Result<(), Failure> {
+    for (at, target) in targets.iter().enumerate() {
+        check_folder(target)?;
+        if targets.iter().take(at).any(|other| other == target) {
+            return Err(Failure::Usage(format!("{}: given twice", target.name())));
+        }
+        if let (Target::File(target), Input::File(input)) = (target, input) {
+            let same = target == input
+                || matches!((target.canonicalize(), input.canonicalize()), (Ok(a), Ok(b)) if a == b);
+            if same {
+                let name = target.display();
+                return Err(Failure::Usage(format!(
+                    "{name}: the output would replace the input"
+                )));
+            }
+        }
+    }
+    Ok(())
+}
+
+/// A missing folder is better told before the work than after it.
+fn check_folder(target: &Target) -> Result<(), Failure> {
+    let Target::File(path) = target else {
+        return Ok(());
+    };
+    let folder = path.parent().filter(|f| !f.as_os_str().is_empty());
+    match folder.map(std::fs::metadata) {
+        Some(Err(cause)) => Err(Failure::writing(path, cause)),
+        _ => Ok(()),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn boxes_are_checked_axis_by_axis() {
+        assert!(clip_box(&[0., 0., 0., 1., 1., 1.]).is_ok());
+        let flat = clip_box(&[0., 2., 0., 1., 1., 1.]).unwrap_err();
+        assert_eq!(
+            flat.to_string(),
+            "--box: YMIN must be below YMAX, found 2 and 1"
+        );
+        assert!(clip_box(&[0., 0., 0., 1., 1., f64::INFINITY]).is_err());
+        assert!(clip_box(&[f64::NAN, 0., 0., 1., 1., 1.]).is_err());
+    }
+
+    #[test]
+    fn extensions_tell_formats() {
+        let format = |name: &str| output(name.into(), None).map(|o| o.format).ok();
+        assert_eq!(format("a.GLB"), Some(OutputFormat::Glb));
+        assert_eq!(format("a.b.obj"), Some(OutputFormat::Obj));
+        assert_eq!(format("a.txt"), None);
+        assert_eq!(format("-"), None);
+        let stdout = output("-".into(), Some(OutputFormat::Stl)).unwrap();
+        assert_eq!(stdout.target, Target::Stdout);
+    }
+}

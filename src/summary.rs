@@ -1,0 +1,122 @@
+//! The closing line: what came out, in words and round numbers.
+
+use crate::report::Report;
+
+/// `part.csg -> part.glb: 12,340 triangles, 1 solid, genus 5, volume 18729.7, watertight, …`.
+pub(crate) fn summary(report: &Report, outputs: &[String]) -> String {
+    let name = &report.input.name;
+    let arrow = if outputs.is_empty() {
+        name.clone()
+    } else {
+        format!("{name} -> {}", outputs.join(", "))
+    };
+    format!("{arrow}: {}", facts(report).join(", "))
+}
+
+fn facts(report: &Report) -> Vec<String> {
+    let seconds = format!("{:.2} s", report.total_seconds);
+    let counts = &report.counts;
+    if counts.facets == 0 {
+        return vec!["the solid is empty".to_owned(), seconds];
+    }
+    let mut facts = vec![
+        counted(counts.facets, "triangle"),
+        counted(counts.solids, "solid"),
+    ];
+    let voids = counts.shells.saturating_sub(counts.solids);
+    if voids > 0 {
+        facts.push(match voids {
+            1 => "1 cavity".to_owned(),
+            more => format!("{} cavities", grouped(more)),
+        });
+    }
+    if let Some(genus) = report.genus {
+        facts.push(format!("genus {}", grouped(genus)));
+    }
+    if let Some(volume) = report.volume {
+        facts.push(format!("volume {}", significant(volume, 6)));
+    }
+    facts.push("watertight".to_owned());
+    if let Some(distance) = report.proved_distance {
+        facts.push(if distance == 0.0 {
+            "exact".to_owned()
+        } else {
+            format!("deviation <= {}", rounded_up(distance))
+        });
+    }
+    if report.uncertified_count > 0 {
+        facts.push(format!(
+            "{} not certified",
+            counted(report.uncertified_count, "cell")
+        ));
+    }
+    if report.clipped {
+        facts.push("clipped to the box".to_owned());
+    }
+    facts.push(seconds);
+    facts
+}
+
+/// A number of things: `1 solid`, `12,340 triangles`.
+fn counted(count: u64, thing: &str) -> String {
+    let plural = if count == 1 { "" } else { "s" };
+    format!("{} {thing}{plural}", grouped(count))
+}
+
+/// With commas between groups of three digits.
+pub(crate) fn grouped(number: u64) -> String {
+    let digits = number.to_string();
+    let mut out = String::with_capacity(digits.len() * 4 / 3);
+    for (at, digit) in digits.chars().enumerate() {
+        if at > 0 && (digits.len() - at).is_multiple_of(3) {
+            out.push(',');
+        }
+        out.push(digit);
+    }
+    out
+}
+
+/// With this many significant digits, without trailing zeros: `18729.7`, `1e-9`.
+fn significant(value: f64, digits: usize) -> String {
+    let scientific = format!("{value:.*e}", digits.saturating_sub(1));
+    let rounded: f64 = scientific.parse().unwrap_or(value);
+    if rounded == 0.0 || (1e-4..1e9).contains(&rounded.abs()) {
+        format!("{rounded}")
+    } else {
+        format!("{rounded:e}")
+    }
+}
+
+/// A bound with two digits must not become smaller by rounding.
+fn rounded_up(bound: f64) -> String {
+    let unit = 10_f64.powf(bound.log10().floor() - 1.0);
+    let up = unit * (bound / unit).ceil();
+    // 0.07 · 1.0 may print as 0.07000000000000001.
+    significant(up, 2)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_are_grouped_and_rounded_for_reading() {
+        assert_eq!(grouped(0), "0");
+        assert_eq!(grouped(999), "999");
+        assert_eq!(grouped(12_340), "12,340");
+        assert_eq!(grouped(1_234_567), "1,234,567");
+        assert_eq!(significant(18_729.747_8, 6), "18729.7");
+        assert_eq!(significant(0.001_5, 6), "0.0015");
+        assert_eq!(significant(-4.0, 6), "-4");
+        assert_eq!(significant(1.5e-9, 6), "1.5e-9");
+        assert_eq!(significant(0.0, 6), "0");
+    }
+
+    #[test]
+    fn bounds_are_rounded_up() {
+        assert_eq!(rounded_up(0.0512), "0.052");
+        assert_eq!(rounded_up(0.05), "0.05");
+        assert_eq!(rounded_up(9.99), "10");
+        assert_eq!(rounded_up(123.4), "130");
+    }
+}
