@@ -179,13 +179,19 @@ pub(crate) fn spread_rad(
 }
 
 /// Whether creases and corners of these sheets stay within the tolerance, too.
+///
+/// `coefficients(i)`: those of sheet i.
 #[must_use]
-pub(crate) fn creases_within(sheets: &[Sheet], tolerance: f64) -> bool {
+pub(crate) fn creases_within<'a>(
+    sheets: &[Sheet],
+    coefficients: impl Fn(usize) -> &'a [f64],
+    tolerance: f64,
+) -> bool {
     let mut apart = [0u64; 64];
     for i in 0..sheets.len().min(64) {
         for j in 0..i {
             let (a, b) = (&sheets[i], &sheets[j]);
-            if disjoint(a, b) {
+            if disjoint(a, coefficients(i), b, coefficients(j)) {
                 apart[i] |= 1 << j;
                 continue;
             }
@@ -232,9 +238,24 @@ pub(crate) fn creases_within(sheets: &[Sheet], tolerance: f64) -> bool {
 
 /// Whether p − λq has one sign in the simplex for a suitable λ, so that the zero sets of p and q
 /// cannot meet there.
-fn disjoint(a: &Sheet, b: &Sheet) -> bool {
+///
+/// Polynomials of one degree are compared coefficient by coefficient, which proves even the
+/// sheets of a very thin shell apart; others by their affine interpolants.
+fn disjoint(a: &Sheet, p: &[f64], b: &Sheet, q: &[f64]) -> bool {
     let ratio = a.slope / b.slope;
     [ratio, -ratio].into_iter().any(|lambda| {
+        if p.len() == q.len() {
+            let (mut low, mut high, mut size) = (f64::INFINITY, f64::NEG_INFINITY, 0.0f64);
+            for (p, q) in p.iter().zip(q) {
+                let d = p - lambda * q;
+                low = low.min(d);
+                high = high.max(d);
+                size = size.max(p.abs());
+            }
+            // The product and the difference round once each; |λq| is about |p| where d is small.
+            let slack = 4.0 * f64::EPSILON * (size + high.max(-low));
+            return low > slack || high < -slack;
+        }
         let slack = a.delta + lambda.abs() * b.delta;
         let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
         for (p, q) in a.values.iter().zip(&b.values) {

@@ -113,7 +113,8 @@ impl<'a> Prover<'a> {
                 let coefficients = frame.coefficients_of(active);
                 found.spread_rad = spread_rad(table, coefficients, &gradients, found.normal);
             }
-            if !creases_within(&self.sheets, tolerance) {
+            let coefficients = |at: usize| frame.coefficients_of(&frame.active[at]);
+            if !creases_within(&self.sheets, coefficients, tolerance) {
                 return Err(Reason::Tangent);
             }
         }
