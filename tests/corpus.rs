@@ -1,0 +1,63 @@
+//! Real OpenSCAD dumps against the values that other programs computed for them.
+
+mod stages;
+
+use serde_json::Value;
+use stages::convert_model;
+use std::fs;
+use subdiv::Rule;
+
+const FOLDER: &str = concat!(
+    env!("CARGO_MANIFEST_DIR"),
+    "/fixtures/third_party/openscad"
+);
+
+#[test]
+fn core_dumps_have_their_reference_values() {
+    let text = fs::read_to_string(format!("{FOLDER}/reference.json")).unwrap();
+    let references: Value = serde_json::from_str(&text).unwrap();
+    let references = references.as_object().unwrap();
+    assert_eq!(references.len(), 31);
+    for (file, reference) in references {
+        let source = fs::read_to_string(format!("{FOLDER}/{file}")).unwrap();
+        let number = |key: &str| reference[key].as_f64();
+        let expected = number("volume").unwrap();
+        let model = stages::read(&source);
+        if expected == 0.0 {
+            let converted = convert_model(&model, Rule::Tolerance(1.0));
+            assert_eq!(converted.brep.facet_count(), 0, "{file}");
+            continue;
+        }
+        let bounds: Vec<f64> = reference["bbox"]
+            .as_array()
+            .unwrap()
+            .iter()
+            .map(|x| x.as_f64().unwrap())
+            .collect();
+        let size = (0..3).map(|a| bounds[a + 3] - bounds[a]).fold(0.0, f64::max);
+        let tolerance = 1e-3 * size;
+        let converted = convert_model(&model, Rule::Tolerance(tolerance));
+        let properties = &converted.properties;
+
+        // Every point of the mesh is within the tolerance of the true boundary: the volume is
+        // within the area times that, and planes contribute nothing.
+        let allowed = number("volume_tol").unwrap() + 1.1 * properties.area * tolerance;
+        let difference = (properties.volume - expected).abs();
+        assert!(difference <= allowed, "{file}: volume off by {difference}");
+
+        let allowed = number("bbox_tol").unwrap() + tolerance;
+        let found = [properties.bounds.min, properties.bounds.max];
+        for axis in 0..3 {
+            for (side, corner) in found.iter().enumerate() {
+                let off = (corner[axis] - bounds[3 * side + axis]).abs();
+                assert!(off <= allowed, "{file}: box off by {off} > {allowed}, axis {axis}, side {side}: {corner}");
+            }
+        }
+        let bodies = number("bodies").unwrap() as usize;
+        assert_eq!(converted.shells.solids.len(), bodies, "{file}");
+        let genus = number("genus").unwrap() as i64;
+        // The reference sums genus over bodies as 1 − χ/2 of the whole.
+        let shells = converted.shells.shells.len() as i64;
+        assert_eq!(converted.shells.genus() as i64 - shells + 1, genus, "{file}");
+    }
+}
