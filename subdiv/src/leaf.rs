@@ -1,7 +1,8 @@
 //! One leaf of the subdivision with the primitives that cross it, and where its vertices lie.
 
 use crate::arrange::{Arrangement, FACET, Planes, barycentric, support};
-use crate::leaf_formula::Label;
+use crate::certify::barycentric_gradients;
+use crate::leaf_formula::{Label, Pattern};
 use crate::mesh::MeshBuilder;
 use crate::simplex::Simplex;
 use crate::snap::{LeafPolynomial, Snapper};
@@ -23,21 +24,62 @@ impl Leaf<'_> {
     /// Position of an arrangement vertex, in the domain's own coordinates: on the polynomials
     /// where Newton's method finds them inside the vertex' face, else on their interpolants.
     pub(crate) fn position(&self, name: [u16; 3], snapper: &mut Snapper) -> DVec3 {
-        let corners = self.simplex.vertices.map(crate::lattice::Point::position);
         let (rows, columns) = support(name);
-        let affine = barycentric(&self.planes, name).unwrap_or_else(|| {
+        let affine = self.affine_barycentric(name);
+        let polynomials: ArrayVec<_, 3> = rows.iter().map(|row| self.polynomials[*row]).collect();
+        let curved = polynomials.iter().any(|p| p.degree > 1);
+        let snapped = curved.then(|| snapper.crossing(&polynomials, &columns, affine));
+        self.at(snapped.flatten().unwrap_or(affine))
+    }
+
+    /// Position of an arrangement vertex on the interpolants.
+    pub(crate) fn affine_position(&self, name: [u16; 3]) -> DVec3 {
+        self.at(self.affine_barycentric(name))
+    }
+
+    fn affine_barycentric(&self, name: [u16; 3]) -> [f64; 4] {
+        barycentric(&self.planes, name).unwrap_or_else(|| {
             // All minors vanish: the planes coincide on the face. Any of its points will do.
+            let (_, columns) = support(name);
             let mut weights = [0.0; 4];
             for &column in &columns {
                 weights[column] = 1.0 / columns.len() as f64;
             }
             weights
-        });
-        let polynomials: ArrayVec<_, 3> = rows.iter().map(|row| self.polynomials[*row]).collect();
-        let curved = polynomials.iter().any(|p| p.degree > 1);
-        let snapped = curved.then(|| snapper.crossing(&polynomials, &columns, affine));
-        let b = snapped.flatten().unwrap_or(affine);
+        })
+    }
+
+    fn at(&self, b: [f64; 4]) -> DVec3 {
+        let corners = self.simplex.vertices.map(crate::lattice::Point::position);
         (0..4).map(|v| corners[v] * b[v]).sum()
+    }
+
+    /// Whether a position is on the side of every other primitive, and of its interpolant, on
+    /// which the arrangement has the vertex `name`: bit j of `pattern` is set inside primitive j.
+    ///
+    /// A vertex moves along its edge or facet to its true place; where the surface grazes the
+    /// edge that can be far, past another surface.
+    pub(crate) fn keeps_sides(
+        &self,
+        name: [u16; 3],
+        pattern: Pattern,
+        position: DVec3,
+        snapper: &mut Snapper,
+    ) -> bool {
+        let origin = self.simplex.vertices[0].position();
+        let gradients = barycentric_gradients(self.simplex);
+        let mut b = gradients.map(|g| g.dot(position - origin));
+        b[0] += 1.0;
+        (0..self.polynomials.len())
+            .filter(|j| !name.contains(&(*j as u16)))
+            .all(|j| {
+                let inside = pattern >> j & 1 == 1;
+                let values = &self.planes.values[j];
+                let affine: f64 = (0..4).map(|v| b[v] * values[v]).sum();
+                let polynomial = self.polynomials[j];
+                (affine < 0.0) == inside
+                    && (polynomial.degree == 1 || (snapper.value(polynomial, b) < 0.0) == inside)
+            })
     }
 
     /// The mesh vertex where a primitive crosses the edge p–q of the simplex.

@@ -44,6 +44,9 @@ pub(crate) struct MeshBuilder {
     pub kinds: Vec<VertexKind>,
     /// The triangles so far.
     pub triangles: Vec<Triangle>,
+    /// Vertices that must not lie on their true surfaces, and where their affine interpolants put
+    /// them.
+    pub affine: Vec<(u32, DVec3)>,
     /// Vertices that only exist since the boundary touches itself.
     pub split_vertices: u64,
     edges: FxHashMap<(Point, u32), u32>,
@@ -107,6 +110,7 @@ impl MeshBuilder {
             positions: Vec::new(),
             kinds: Vec::new(),
             triangles: Vec::new(),
+            affine: Vec::new(),
             split_vertices: 0,
             edges: FxHashMap::default(),
             facets: FxHashMap::default(),
@@ -220,6 +224,9 @@ pub(crate) fn join(parts: Vec<MeshBuilder>, to_model: impl Fn(DVec3) -> DVec3) -
         }
         for (name, vertex) in new_border {
             shared.insert(name, renumbered[vertex as usize]);
+        }
+        for (vertex, position) in &part.affine {
+            whole.positions[renumbered[*vertex as usize] as usize] = to_model(*position);
         }
         whole
             .triangles

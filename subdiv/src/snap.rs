@@ -108,6 +108,11 @@ impl Snapper {
         ((1.0 - t) * a + t * b, n as f64 * (b - a))
     }
 
+    /// Value at barycentric coordinates `b`.
+    pub(crate) fn value(&mut self, p: LeafPolynomial<'_>, b: [f64; 4]) -> f64 {
+        self.evaluate(p, b).0
+    }
+
     /// Value at barycentric coordinates `b` and the four partial derivatives by them.
     fn evaluate(&mut self, p: LeafPolynomial<'_>, b: [f64; 4]) -> (f64, [f64; 4]) {
         let c = &mut self.triangle;

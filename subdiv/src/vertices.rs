@@ -56,11 +56,17 @@ impl VertexNamer {
         mesh: &mut MeshBuilder,
     ) -> Option<u32> {
         let name = polygon.arrangement.vertex(side.from).planes;
-        match name.iter().filter(|p| **p < FACET).count() {
-            1 => Some(polygon.edge_vertex(name, &mut self.snapper, mesh)),
-            2 => self.facet_vertex(formula, polygon, name, side.pattern, mesh),
-            _ => Some(self.corner_vertex(formula, polygon, side, mesh)),
+        let vertex = match name.iter().filter(|p| **p < FACET).count() {
+            1 => polygon.edge_vertex(name, &mut self.snapper, mesh),
+            2 => self.facet_vertex(formula, polygon, name, side.pattern, mesh)?,
+            _ => self.corner_vertex(formula, polygon, side, mesh),
+        };
+        let position = mesh.positions[vertex as usize];
+        let leaf = polygon.leaf;
+        if !leaf.keeps_sides(name, side.pattern, position, &mut self.snapper) {
+            mesh.affine.push((vertex, leaf.affine_position(name)));
         }
+        Some(vertex)
     }
 
     fn facet_vertex(
