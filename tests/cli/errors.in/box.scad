@@ -1,0 +1,6 @@
+wall = 2;
+
+module box(w) {
+	cube([w, w, wall]);
+}
+box(10);
