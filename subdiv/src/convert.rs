@@ -44,7 +44,14 @@ pub fn convert(
         .num_threads(threads)
         .build()
         .map_err(|_| Error::Threads(threads))?;
-    pool.install(|| run(&plan, observer))
+    // From a thread of its own: a caller that is itself a rayon worker would otherwise take up
+    // other jobs while it waits, conversions inside conversions, until its stack is full.
+    std::thread::scope(|scope| {
+        let worker = scope.spawn(|| pool.install(|| run(&plan, observer)));
+        worker
+            .join()
+            .unwrap_or_else(|panic| std::panic::resume_unwind(panic))
+    })
 }
 
 /// A run with everything resolved.
