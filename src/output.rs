@@ -4,6 +4,7 @@ use crate::args::OutputFormat;
 use crate::failure::Failure;
 use crate::pipeline::Boundary;
 use crate::run::{Output, Target};
+use brep::Shading;
 use csg::Material;
 use io::write::{Error, atomic, gltf, obj, stl};
 use std::io::{BufWriter, Write};
@@ -13,7 +14,7 @@ use std::path::Path;
 /// know about the file.
 pub(crate) fn write(output: &Output, boundary: &Boundary) -> Result<Option<String>, Failure> {
     let library = match (output.format, &output.target) {
-        (OutputFormat::Obj, Target::File(path)) if is_painted(&boundary.materials) => {
+        (OutputFormat::Obj, Target::File(path)) if is_painted(&boundary.solid.materials) => {
             Some(path.with_extension("mtl"))
         }
         _ => None,
@@ -26,12 +27,10 @@ pub(crate) fn write(output: &Output, boundary: &Boundary) -> Result<Option<Strin
         Ok(())
     })?;
     if let Some(library) = library {
-        let Boundary {
-            brep, materials, ..
-        } = boundary;
+        let Boundary { brep, solid } = boundary;
         let target = Target::File(library);
         to_target(&target, |mut out| {
-            obj::write_materials(brep, materials, &mut out)
+            obj::write_materials(brep, &solid.materials, &mut out)
         })?;
     }
     Ok(remark)
@@ -63,9 +62,7 @@ fn mesh(
     material_library: Option<String>,
     mut out: &mut dyn Write,
 ) -> Result<Option<String>, Error> {
-    let Boundary {
-        brep, materials, ..
-    } = boundary;
+    let Boundary { brep, solid } = boundary;
     match format {
         OutputFormat::Obj => {
             let options = obj::Options {
@@ -74,7 +71,11 @@ fn mesh(
             };
             obj::write(brep, &options, &mut out)?;
         }
-        OutputFormat::Glb => gltf::write(brep, materials, &gltf::Options::default(), &mut out)?,
+        OutputFormat::Glb => {
+            let shading = Shading::on_surfaces(brep, solid);
+            let options = gltf::Options::default();
+            gltf::write_shaded(brep, &shading, &solid.materials, &options, &mut out)?;
+        }
         OutputFormat::Stl => {
             let outcome = stl::write(brep, &mut out)?;
             if let stl::Welding::Broken { .. } = outcome.welding {

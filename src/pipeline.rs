@@ -9,13 +9,13 @@ use crate::run::Job;
 use crate::talk::Talk;
 use brep::simplify::remove_degenerate;
 use brep::{Brep, Groups, Properties, Shells, Valid};
-use csg::{Material, Solid};
+use csg::Solid;
 use subdiv::{Fragments, Rule};
 
 /// A solid's boundary, ready to be written.
 pub(crate) struct Boundary {
     pub(crate) brep: Valid<Brep>,
-    pub(crate) materials: Vec<Material>,
+    pub(crate) solid: Solid,
 }
 
 /// Runs all stages; `report` learns what each one did, also when a later one fails.
@@ -50,10 +50,7 @@ pub(crate) fn run(
         (Groups::of(&brep), Shells::of(&brep), Properties::of(&brep))
     });
     report.add_boundary(&brep, &groups, &shells, &properties);
-    Ok(Boundary {
-        brep,
-        materials: solid.materials,
-    })
+    Ok(Boundary { brep, solid })
 }
 
 fn warn(loaded: &Loaded, talk: Talk, report: &mut Report) {

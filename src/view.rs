@@ -10,6 +10,7 @@ use crate::run::{Job, Target, check_targets};
 use crate::summary::summary;
 use crate::talk::Talk;
 use crate::values::PictureSize;
+use brep::Shading;
 use io::write::picture::{self, Options, View};
 use std::time::Instant;
 
@@ -26,7 +27,9 @@ pub(crate) fn run(args: ViewArgs, talk: Talk) -> Result<(), Failure> {
     let boundary = pipeline::run(&job, None, talk, &progress, &mut report)?;
     progress.begin("drawing");
     output::to_target(&target, |mut out| {
-        picture::write(&boundary.brep, &boundary.materials, &options, &mut out)
+        let shading = Shading::on_surfaces(&boundary.brep, &boundary.solid);
+        let materials = &boundary.solid.materials;
+        picture::write_shaded(&boundary.brep, &shading, materials, &options, &mut out)
     })?;
     drop(progress);
     report.total_seconds = start.elapsed().as_secs_f64();

@@ -134,7 +134,7 @@ impl Groups {
     }
 
     /// The crease that leaves the target of `crease` with the same face to the left.
-    fn continuation<'a>(&self, crease: HalfEdgeView<'a>) -> HalfEdgeView<'a> {
+    pub(crate) fn continuation<'a>(&self, crease: HalfEdgeView<'a>) -> HalfEdgeView<'a> {
         // Clockwise around the target, through the facets of the left face.
         let mut half_edge = crease.next();
         while !self.is_crease(half_edge) {

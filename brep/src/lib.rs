@@ -39,6 +39,7 @@ mod smooth;
 mod stitch;
 mod sum;
 mod topology;
+mod triangulate;
 mod validate;
 
 pub mod defects;
@@ -52,10 +53,11 @@ pub use euler::EulerCharacteristic;
 pub use group::{Edge, Face, FaceId, Groups};
 pub use properties::Properties;
 pub use shells::{Shell, ShellId, ShellRole, Shells, Solid};
-pub use smooth::{Corner, CornerId, Corners};
+pub use smooth::{Corner, CornerId, Corners, Shading};
 pub use stitch::{check_manifold, stitch};
 pub use topology::{
     Brep, Facet, FacetKey, FacetView, HalfEdge, HalfEdgeKey, HalfEdgeView, Vertex, VertexKey,
     VertexView,
 };
+pub use triangulate::{Retriangulated, retriangulate};
 pub use validate::{Defect, Defects, Valid};

@@ -3,6 +3,7 @@
 use crate::group::Groups;
 use crate::topology::{Brep, HalfEdgeKey, HalfEdgeView, VertexKey};
 use crate::validate::Valid;
+use csg::{Sense, Solid};
 use glam::DVec3;
 use slotmap::SecondaryMap;
 
@@ -15,6 +16,8 @@ pub struct CornerId(pub u32);
 pub struct Corner {
     /// The mesh vertex.
     pub vertex: VertexKey,
+    /// A half-edge that starts at the vertex, in one of the corner's facets.
+    pub half_edge: HalfEdgeKey,
     /// Unit normal, outward.
     pub normal: DVec3,
 }
@@ -40,24 +43,24 @@ impl Corners {
             let start = vertex.ring().find(|&half_edge| groups.is_crease(half_edge));
             let start = start.unwrap_or_else(|| vertex.outgoing());
             let mut sum = DVec3::ZERO;
-            let mut first = this.corners.len();
+            let mut first = start;
             for half_edge in start.ring() {
                 if half_edge.key() != start.key() && groups.is_crease(half_edge) {
-                    this.close(sum, start);
-                    first = this.corners.len();
+                    this.close(sum, first);
+                    first = half_edge;
                     sum = DVec3::ZERO;
                 }
                 // Corners are at most as many as half-edges, which 32-bit keys number.
-                let id = CornerId(u32::try_from(first).unwrap_or(u32::MAX));
+                let id = CornerId(u32::try_from(this.corners.len()).unwrap_or(u32::MAX));
                 this.corner_of.insert(half_edge.key(), id);
                 sum += weighted_normal(half_edge);
             }
-            this.close(sum, start);
+            this.close(sum, first);
         }
         this
     }
 
-    /// Ends a sector; one without area takes the normal of the whole vertex.
+    /// Ends a sector that begins at `spoke`; one without area takes the normal of the whole vertex.
     fn close(&mut self, sum: DVec3, spoke: HalfEdgeView<'_>) {
         let normal = sum
             .try_normalize()
@@ -69,7 +72,58 @@ impl Corners {
             })
             .unwrap_or(DVec3::Z);
         let vertex = spoke.origin().key();
-        self.corners.push(Corner { vertex, normal });
+        let half_edge = spoke.key();
+        self.corners.push(Corner {
+            vertex,
+            half_edge,
+            normal,
+        });
+    }
+}
+
+/// What it takes to draw a boundary smoothly.
+#[derive(Clone, Debug)]
+pub struct Shading {
+    /// Its faces, edges and vertices.
+    pub groups: Groups,
+    /// Its corners with their normals.
+    pub corners: Corners,
+}
+
+impl Shading {
+    /// Normals from the facets alone.
+    pub fn of(brep: &Valid<Brep>) -> Self {
+        let groups = Groups::of(brep);
+        let corners = Corners::of(brep, &groups);
+        Self { groups, corners }
+    }
+
+    /// Normals from the primitives' gradients: smooth also where facets are few and uneven.
+    ///
+    /// Where a gradient vanishes or contradicts the facets by more than 60° (near singular points
+    /// and on uncertified cells), the facets' normal stays. `solid` is what the boundary was made
+    /// from.
+    pub fn on_surfaces(brep: &Valid<Brep>, solid: &Solid) -> Self {
+        const COS_60: f64 = 0.5;
+        let mut shading = Self::of(brep);
+        for corner in &mut shading.corners.corners {
+            let facet = brep.half_edge(corner.half_edge).facet();
+            let Some(primitive) = solid.primitives.get(facet.primitive().0 as usize) else {
+                continue;
+            };
+            // The domain is a cube: directions are the same in its coordinates.
+            let position = solid.domain.to_unit(brep.vertex(corner.vertex).position());
+            let gradient = primitive.polynomial.gradient(position);
+            let outward = match facet.sense() {
+                Sense::Inside => gradient,
+                Sense::Outside => -gradient,
+            };
+            match outward.try_normalize() {
+                Some(normal) if normal.dot(corner.normal) > COS_60 => corner.normal = normal,
+                _ => {}
+            }
+        }
+        shading
     }
 }
 
@@ -86,6 +140,7 @@ mod tests {
     use super::*;
     use crate::samples::{cube, sphere};
     use crate::stitch;
+    use csg::{Aabb, Domain, Formula, FormulaNode, Polynomial, Primitive};
     use subdiv::Fragments;
 
     fn corners(fragments: &Fragments) -> (Valid<Brep>, Corners) {
@@ -123,6 +178,53 @@ mod tests {
             let radial = brep.vertex(corner.vertex).position();
             assert!(corner.normal.angle_between(radial) < worst_facet / 3.0);
         }
+    }
+
+    #[test]
+    fn gradients_make_a_coarse_sphere_exact() {
+        let extent = Aabb {
+            min: DVec3::NEG_ONE,
+            max: DVec3::ONE,
+        };
+        let domain = Domain::around(&extent);
+        // In the domain's own coordinates: |origin + size u|² − 1.
+        let (o, s) = (domain.origin(), domain.size());
+        let mut matrix = [[0.0; 4]; 4];
+        for axis in 0..3 {
+            matrix[axis][axis] = s * s;
+            matrix[axis][3] = s * o[axis];
+            matrix[3][axis] = s * o[axis];
+        }
+        matrix[3][3] = o.length_squared() - 1.0;
+        let polynomial = Polynomial::quadric(&matrix).expect("a quadric");
+        let solid = |polynomial| Solid {
+            domain,
+            extent,
+            primitives: vec![Primitive {
+                polynomial,
+                coefficient_error: 0.0,
+            }],
+            formula: Formula::new(vec![FormulaNode::Union { len: 0 }]).expect("a formula"),
+            materials: Vec::new(),
+            clipped: false,
+            nearly_equal: Vec::new(),
+        };
+        let brep = stitch(&sphere(1))
+            .expect("closed")
+            .validate()
+            .expect("valid");
+        let error = |shading: Shading| {
+            let off = |corner: &Corner| {
+                let radial = brep.vertex(corner.vertex).position();
+                corner.normal.angle_between(radial)
+            };
+            shading.corners.corners.iter().map(off).fold(0.0, f64::max)
+        };
+        assert!(error(Shading::on_surfaces(&brep, &solid(polynomial))) < 1e-7);
+        // A primitive that contradicts the facets, or has no gradient, is not believed.
+        let plain = error(Shading::of(&brep));
+        let constant = Polynomial::constant(1.0).expect("a constant");
+        assert!((error(Shading::on_surfaces(&brep, &solid(constant))) - plain).abs() < 1e-12);
     }
 
     #[test]

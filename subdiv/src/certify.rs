@@ -8,7 +8,12 @@
 //!   set is a graph over the plane across u, and p = 0 is reached from ℓ = 0 within δ/g;
 //! * φ = largest angle between u and a control gradient.
 //!
-//! A crease of two surfaces moves by at most √(d₁² + d₂² + 2·d₁·d₂·cos θ)/sin θ when they move by
+//! Where all outward normals have a common direction, several surfaces are as good as one: the
+//! solid is then `height ≤ F(h₁, …)` with the heights hᵢ of its surfaces along that direction and
+//! a formula F of minima and maxima, which changes by no more than its arguments do. Tangent
+//! surfaces, a dome on a cylinder, need nothing else.
+//!
+//! Otherwise a crease of two surfaces moves by at most √(d₁² + d₂² + 2·d₁·d₂·cos θ)/sin θ when they move by
 //! d₁ and d₂ and meet at an angle of at least θ = θ_ℓ − φ₁ − φ₂; a corner by at most
 //! √3·√(d₁² + d₂² + d₃²)/|det u| with the determinant of the three unit normals.
 
@@ -176,6 +181,27 @@ pub(crate) fn spread_rad(
         smallest_cosine = smallest_cosine.min(g.dot(normal) / g.length());
     }
     smallest_cosine.clamp(-1.0, 1.0).acos()
+}
+
+/// Smallest directional derivative of a polynomial along the unit vector `direction`.
+#[must_use]
+pub(crate) fn slope_along(
+    table: &DegreeTable,
+    coefficients: &[f64],
+    gradients: &BarycentricGradients,
+    direction: DVec3,
+) -> f64 {
+    let along = gradients.map(|g| g.dot(direction) * table.degree as f64);
+    let derivative = |raised: &[u32; 4]| {
+        (0..4)
+            .map(|v| along[v] * coefficients[raised[v] as usize])
+            .sum::<f64>()
+    };
+    table
+        .raised
+        .iter()
+        .map(derivative)
+        .fold(f64::INFINITY, f64::min)
 }
 
 /// Whether creases and corners of these sheets stay within the tolerance, too.

@@ -99,16 +99,21 @@ impl<'a> Plan<'a> {
     }
 }
 
-/// The level at which the longest edge of a simplex, √3·2^(−level/3) in domain units, is no
-/// longer than the tolerance.
+/// The level at which the longest edge of a simplex is no longer than the tolerance.
+///
+/// In cubes of side h it is √3·h for type 0, √2·h for type 1 and h for type 2 (Table 4.2).
 fn level_for(tolerance: f64) -> u8 {
-    let mut level = 3;
-    let mut longest = 3f64.sqrt() / 2.0;
-    while longest > tolerance && level < MAX_LEVEL {
-        longest /= 2.0;
-        level += 3;
+    let mut level = 0;
+    let mut side = 1.0;
+    loop {
+        for longest in [3f64.sqrt(), 2f64.sqrt(), 1.0] {
+            if side * longest <= tolerance || level == MAX_LEVEL {
+                return level;
+            }
+            level += 1;
+        }
+        side *= 0.5;
     }
-    level
 }
 
 fn run(plan: &Plan<'_>, observer: &dyn Observer) -> Result<Outcome, Error> {

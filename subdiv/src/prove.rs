@@ -1,13 +1,17 @@
 //! First traversal: where the metric rule (`crate::certify`) wants to bisect.
 
-use crate::certify::{Sheet, barycentric_gradients, creases_within, sheet, spread_rad};
+use crate::certify::{
+    BarycentricGradients, Sheet, barycentric_gradients, creases_within, sheet, slope_along,
+    spread_rad,
+};
 use crate::convert::Plan;
 use crate::lattice::Point;
 use crate::limits::Budget;
 use crate::settings::{MAX_SPOTS, Observer, Reason, Report, Spot};
 use crate::simplex::Simplex;
 use crate::walk::{Frame, Sector, Visitor};
-use csg::PrimitiveId;
+use csg::{FormulaNode, PrimitiveId, Sense};
+use glam::DVec3;
 use rayon::prelude::*;
 
 /// Most primitives in a leaf that the metric rule accepts.
@@ -108,6 +112,11 @@ impl<'a> Prover<'a> {
             self.sheets.push(found);
         }
         if self.sheets.len() > 1 && largest > 0.0 {
+            if let Some(deviation) = self.common_graph(frame, &gradients)
+                && deviation <= tolerance
+            {
+                return Ok(deviation);
+            }
             for (active, found) in frame.active.iter().zip(&mut self.sheets) {
                 let table = &self.plan.tables[active.degree as usize - 1];
                 let coefficients = frame.coefficients_of(active);
@@ -119,6 +128,30 @@ impl<'a> Prover<'a> {
             }
         }
         Ok(largest)
+    }
+
+    /// The deviation of a leaf whose boundary is one graph over the plane across some direction.
+    fn common_graph(&self, frame: &Frame, gradients: &BarycentricGradients) -> Option<f64> {
+        let mut outward = arrayvec::ArrayVec::<f64, CROWD>::new();
+        for active in &frame.active {
+            outward.push(single_sense(&frame.formula, active.primitive)?);
+        }
+        let sum: DVec3 = (self.sheets.iter().zip(&outward))
+            .map(|(sheet, sign)| sheet.normal * *sign)
+            .sum();
+        let direction = sum.try_normalize()?;
+        let mut largest = 0.0f64;
+        for ((active, sheet), sign) in frame.active.iter().zip(&self.sheets).zip(&outward) {
+            let table = &self.plan.tables[active.degree as usize - 1];
+            let coefficients = frame.coefficients_of(active);
+            let slope = slope_along(table, coefficients, gradients, direction * *sign);
+            // Steeper than 75° against the direction is no graph to rely on.
+            if slope < 0.25 * sheet.slope {
+                return None;
+            }
+            largest = largest.max(sheet.delta / slope);
+        }
+        Some(largest)
     }
 
     fn list(&mut self, simplex: &Simplex, frame: &Frame, reason: Reason) {
@@ -166,4 +199,24 @@ impl Visitor for Prover<'_> {
     fn stopped(&self) -> bool {
         self.budget.stopped()
     }
+}
+
+/// 1 when all literals of a primitive mean its inside, so that its gradient points outward, −1
+/// when all mean its outside, `None` when both occur.
+fn single_sense(formula: &[FormulaNode], primitive: u32) -> Option<f64> {
+    let mut found = None;
+    for node in formula {
+        if let FormulaNode::Literal(literal) = node
+            && literal.primitive.0 == primitive
+        {
+            if found.is_some_and(|sense| sense != literal.sense) {
+                return None;
+            }
+            found = Some(literal.sense);
+        }
+    }
+    Some(match found? {
+        Sense::Inside => 1.0,
+        Sense::Outside => -1.0,
+    })
 }

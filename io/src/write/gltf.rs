@@ -7,7 +7,7 @@
 
 use super::stl::single_precision;
 use super::{Error, GENERATOR, appearance};
-use brep::{Brep, Corners, FacetView, Groups, Valid};
+use brep::{Brep, Corners, FacetView, Shading, Valid};
 use csg::{Aabb, Material, MaterialId};
 use glam::DVec3;
 use gltf_json as json;
@@ -49,13 +49,27 @@ pub fn write(
     options: &Options,
     out: &mut impl Write,
 ) -> Result<(), Error> {
+    write_shaded(brep, &Shading::of(brep), materials, options, out)
+}
+
+/// As [`write()`], with normals of the caller's choice.
+///
+/// # Errors
+/// As [`write()`].
+pub fn write_shaded(
+    brep: &Valid<Brep>,
+    shading: &Shading,
+    materials: &[Material],
+    options: &Options,
+    out: &mut impl Write,
+) -> Result<(), Error> {
     let mut file = Document::new();
     if brep.is_empty() {
         // A scene without any node is valid, but widespread readers refuse it.
         file.add_node(json::Node::default());
     } else {
         let origin = local_origin(&brep.bounds());
-        let mesh = file.add_mesh(brep, materials, origin)?;
+        let mesh = file.add_mesh(brep, &shading.corners, materials, origin)?;
         file.add_node(upright(mesh, origin, options.metres_per_unit));
     }
     file.finish(out)
@@ -105,11 +119,11 @@ impl Document {
     fn add_mesh(
         &mut self,
         brep: &Valid<Brep>,
+        corners: &Corners,
         materials: &[Material],
         origin: DVec3,
     ) -> Result<Index<json::Mesh>, Error> {
-        let corners = Corners::of(brep, &Groups::of(brep));
-        let attributes = self.add_vertices(brep, &corners, origin)?;
+        let attributes = self.add_vertices(brep, corners, origin)?;
         let mut facets: Vec<FacetView<'_>> = brep.facets().collect();
         facets.sort_by_key(|facet| facet.material());
 
@@ -128,7 +142,7 @@ impl Document {
             primitives.push(primitive(attributes.clone(), accessor, Some(material)));
         }
 
-        let merge = self.add_merges(&corners, &indices);
+        let merge = self.add_merges(corners, &indices);
         let sparse = merge.as_ref().map(|merge| merge.sparse.clone());
         let all = self.add_indices(index_view, 0, indices.len(), sparse);
         let only_positions = attributes

@@ -12,7 +12,7 @@ mod scene;
 mod shade;
 
 use super::Error;
-use brep::{Brep, Valid};
+use brep::{Brep, Shading, Valid};
 use csg::Material;
 use std::io::Write;
 
@@ -91,11 +91,25 @@ pub fn write(
     options: &Options,
     out: &mut impl Write,
 ) -> Result<(), Error> {
+    write_shaded(brep, &Shading::of(brep), materials, options, out)
+}
+
+/// As [`write()`], with normals of the caller's choice.
+///
+/// # Errors
+/// As [`write()`].
+pub fn write_shaded(
+    brep: &Valid<Brep>,
+    shading: &Shading,
+    materials: &[Material],
+    options: &Options,
+    out: &mut impl Write,
+) -> Result<(), Error> {
     let Options { width, height, .. } = *options;
     if width == 0 || height == 0 || u64::from(width) * u64::from(height) > Options::MAX_PIXELS {
         return Err(Error::PictureSize { width, height });
     }
-    let scene = scene::Scene::new(brep, materials);
+    let scene = scene::Scene::new(brep, shading, materials);
     let pixels = shade::render(&scene, options);
 
     let mut encoder = png::Encoder::new(out, width, height);

@@ -109,7 +109,7 @@ impl Lights {
     pub(super) fn new(scene: &Scene, eye: &Axes) -> Self {
         // Maps cost time in proportion to the triangles: about 2·10⁷ triangles altogether.
         let rounds = (2e7 / (GROUPS * scene.triangles.len().max(1)) as f32) as usize;
-        let sky_count = GROUPS * rounds.clamp(4, 10);
+        let sky_count = GROUPS * rounds.clamp(4, 14);
         let lamp_count = GROUPS;
         let main = eye.toward * 0.55 - eye.right * 0.75 + Vec3::Z * 0.95;
         let sky: Vec<(Vec3, Vec3)> = (0..sky_count)

@@ -1,7 +1,7 @@
 //! The boundary as flat arrays of 32-bit numbers, moved and scaled into the unit sphere.
 
 use crate::write::appearance;
-use brep::{Brep, Corners, Groups, Valid};
+use brep::{Brep, Shading, Valid};
 use csg::Material;
 use glam::Vec3;
 
@@ -30,13 +30,12 @@ pub(super) struct Scene {
 }
 
 impl Scene {
-    pub(super) fn new(brep: &Valid<Brep>, materials: &[Material]) -> Self {
+    pub(super) fn new(brep: &Valid<Brep>, shading: &Shading, materials: &[Material]) -> Self {
         let bounds = brep.bounds();
         if brep.is_empty() {
             return Self::default();
         }
-        let groups = Groups::of(brep);
-        let corners = Corners::of(brep, &groups);
+        let Shading { groups, corners } = shading;
         let centre = bounds.min + (bounds.max - bounds.min) * 0.5;
         let radius = (bounds.diagonal() / 2.0).max(f64::MIN_POSITIVE);
         let fit = |position: glam::DVec3| ((position - centre) / radius).as_vec3();

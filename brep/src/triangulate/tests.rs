@@ -1,0 +1,3 @@
+use super::*;
+use crate::samples::{cube, sphere, together};
+use crate::{Properties, Shells};
