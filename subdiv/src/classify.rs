@@ -27,6 +27,8 @@ pub(crate) fn classify(
         2 => range::<10>(coefficients),
         3 => range::<20>(coefficients),
         4 => range::<35>(coefficients),
+        5 => range::<56>(coefficients),
+        6 => range::<84>(coefficients),
         _ => coefficients
             .iter()
             .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), c| {

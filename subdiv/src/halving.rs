@@ -7,7 +7,7 @@
 //! (s−r, r, j, k) for types 1 and 2, whose vertices are listed in [`crate::simplex`].
 //!
 //! The sum is symmetric, so a facet gets identical bits from both sides. Each of the n averages
-//! rounds once. Degrees 1 to 4 are written out: loops over tables were several times slower.
+//! rounds once. Degrees 1 to 6 are written out: loops over tables were several times slower.
 
 use crate::bernstein::index;
 
@@ -25,6 +25,10 @@ pub(crate) fn halve(degree: usize, kind: u8, parent: &[f64], near: &mut [f64], f
         (3, _) => straight_3(parent, near, far),
         (4, 0) => straight_4_swapped(parent, near, far),
         (4, _) => straight_4(parent, near, far),
+        (5, 0) => straight_5_swapped(parent, near, far),
+        (5, _) => straight_5(parent, near, far),
+        (6, 0) => straight_6_swapped(parent, near, far),
+        (6, _) => straight_6(parent, near, far),
         _ => halve_any_degree(degree, kind, parent, near, far),
     }
 }
@@ -85,6 +89,66 @@ macro_rules! line {
         let m = 0.5 * (abcd + bcde);
         ($n[$r0], $n[$r1], $n[$r2], $n[$r3], $n[$r4]) = (a, ab, abc, abcd, m);
         ($f[$q0], $f[$q1], $f[$q2], $f[$q3], $f[$q4]) = (e, de, cde, bcde, m);
+    };
+    ($p:ident $n:ident $f:ident; $a0:literal $a1:literal $a2:literal $a3:literal $a4:literal $a5:literal; $r0:literal $r1:literal $r2:literal $r3:literal $r4:literal $r5:literal; $q0:literal $q1:literal $q2:literal $q3:literal $q4:literal $q5:literal) => {
+        let (a, b, c, d, e, f) = ($p[$a0], $p[$a1], $p[$a2], $p[$a3], $p[$a4], $p[$a5]);
+        let (ab, bc, cd, de, ef) = (
+            0.5 * (a + b),
+            0.5 * (b + c),
+            0.5 * (c + d),
+            0.5 * (d + e),
+            0.5 * (e + f),
+        );
+        let (abc, bcd, cde, def) = (
+            0.5 * (ab + bc),
+            0.5 * (bc + cd),
+            0.5 * (cd + de),
+            0.5 * (de + ef),
+        );
+        let (abcd, bcde, cdef) = (0.5 * (abc + bcd), 0.5 * (bcd + cde), 0.5 * (cde + def));
+        let (abcde, bcdef) = (0.5 * (abcd + bcde), 0.5 * (bcde + cdef));
+        let m = 0.5 * (abcde + bcdef);
+        ($n[$r0], $n[$r1], $n[$r2], $n[$r3], $n[$r4], $n[$r5]) = (a, ab, abc, abcd, abcde, m);
+        ($f[$q0], $f[$q1], $f[$q2], $f[$q3], $f[$q4], $f[$q5]) = (f, ef, def, cdef, bcdef, m);
+    };
+    ($p:ident $n:ident $f:ident; $a0:literal $a1:literal $a2:literal $a3:literal $a4:literal $a5:literal $a6:literal; $r0:literal $r1:literal $r2:literal $r3:literal $r4:literal $r5:literal $r6:literal; $q0:literal $q1:literal $q2:literal $q3:literal $q4:literal $q5:literal $q6:literal) => {
+        let (a, b, c, d, e, f, g) = (
+            $p[$a0], $p[$a1], $p[$a2], $p[$a3], $p[$a4], $p[$a5], $p[$a6],
+        );
+        let (ab, bc, cd, de, ef, fg) = (
+            0.5 * (a + b),
+            0.5 * (b + c),
+            0.5 * (c + d),
+            0.5 * (d + e),
+            0.5 * (e + f),
+            0.5 * (f + g),
+        );
+        let (abc, bcd, cde, def, efg) = (
+            0.5 * (ab + bc),
+            0.5 * (bc + cd),
+            0.5 * (cd + de),
+            0.5 * (de + ef),
+            0.5 * (ef + fg),
+        );
+        let (abcd, bcde, cdef, defg) = (
+            0.5 * (abc + bcd),
+            0.5 * (bcd + cde),
+            0.5 * (cde + def),
+            0.5 * (def + efg),
+        );
+        let (abcde, bcdef, cdefg) = (
+            0.5 * (abcd + bcde),
+            0.5 * (bcde + cdef),
+            0.5 * (cdef + defg),
+        );
+        let (abcdef, bcdefg) = (0.5 * (abcde + bcdef), 0.5 * (bcdef + cdefg));
+        let m = 0.5 * (abcdef + bcdefg);
+        (
+            $n[$r0], $n[$r1], $n[$r2], $n[$r3], $n[$r4], $n[$r5], $n[$r6],
+        ) = (a, ab, abc, abcd, abcde, abcdef, m);
+        (
+            $f[$q0], $f[$q1], $f[$q2], $f[$q3], $f[$q4], $f[$q5], $f[$q6],
+        ) = (g, fg, efg, defg, cdefg, bcdefg, m);
     };
 }
 
@@ -190,6 +254,112 @@ straight! { straight_4 35
     { 21; 31; 31 }
     { 20; 30; 30 }
 }
+straight! { straight_5_swapped 56
+    { 0 3 9 19 34 55; 0 1 4 10 20 35; 0 1 4 10 20 35 }
+    { 2 8 18 33 54; 3 6 12 22 37; 2 5 11 21 36 }
+    { 7 17 32 53; 9 15 25 40; 7 13 23 38 }
+    { 16 31 52; 19 29 44; 16 26 41 }
+    { 30 51; 34 49; 30 45 }
+    { 50; 55; 50 }
+    { 1 6 15 29 49; 2 5 11 21 36; 3 6 12 22 37 }
+    { 5 14 28 48; 8 14 24 39; 8 14 24 39 }
+    { 13 27 47; 18 28 43; 17 27 42 }
+    { 26 46; 33 48; 31 46 }
+    { 45; 54; 51 }
+    { 4 12 25 44; 7 13 23 38; 9 15 25 40 }
+    { 11 24 43; 17 27 42; 18 28 43 }
+    { 23 42; 32 47; 32 47 }
+    { 41; 53; 52 }
+    { 10 22 40; 16 26 41; 19 29 44 }
+    { 21 39; 31 46; 33 48 }
+    { 38; 52; 53 }
+    { 20 37; 30 45; 34 49 }
+    { 36; 51; 54 }
+    { 35; 50; 55 }
+}
+straight! { straight_5 56
+    { 0 3 9 19 34 55; 0 1 4 10 20 35; 0 1 4 10 20 35 }
+    { 2 8 18 33 54; 3 6 12 22 37; 3 6 12 22 37 }
+    { 7 17 32 53; 9 15 25 40; 9 15 25 40 }
+    { 16 31 52; 19 29 44; 19 29 44 }
+    { 30 51; 34 49; 34 49 }
+    { 50; 55; 55 }
+    { 1 6 15 29 49; 2 5 11 21 36; 2 5 11 21 36 }
+    { 5 14 28 48; 8 14 24 39; 8 14 24 39 }
+    { 13 27 47; 18 28 43; 18 28 43 }
+    { 26 46; 33 48; 33 48 }
+    { 45; 54; 54 }
+    { 4 12 25 44; 7 13 23 38; 7 13 23 38 }
+    { 11 24 43; 17 27 42; 17 27 42 }
+    { 23 42; 32 47; 32 47 }
+    { 41; 53; 53 }
+    { 10 22 40; 16 26 41; 16 26 41 }
+    { 21 39; 31 46; 31 46 }
+    { 38; 52; 52 }
+    { 20 37; 30 45; 30 45 }
+    { 36; 51; 51 }
+    { 35; 50; 50 }
+}
+straight! { straight_6_swapped 84
+    { 0 3 9 19 34 55 83; 0 1 4 10 20 35 56; 0 1 4 10 20 35 56 }
+    { 2 8 18 33 54 82; 3 6 12 22 37 58; 2 5 11 21 36 57 }
+    { 7 17 32 53 81; 9 15 25 40 61; 7 13 23 38 59 }
+    { 16 31 52 80; 19 29 44 65; 16 26 41 62 }
+    { 30 51 79; 34 49 70; 30 45 66 }
+    { 50 78; 55 76; 50 71 }
+    { 77; 83; 77 }
+    { 1 6 15 29 49 76; 2 5 11 21 36 57; 3 6 12 22 37 58 }
+    { 5 14 28 48 75; 8 14 24 39 60; 8 14 24 39 60 }
+    { 13 27 47 74; 18 28 43 64; 17 27 42 63 }
+    { 26 46 73; 33 48 69; 31 46 67 }
+    { 45 72; 54 75; 51 72 }
+    { 71; 82; 78 }
+    { 4 12 25 44 70; 7 13 23 38 59; 9 15 25 40 61 }
+    { 11 24 43 69; 17 27 42 63; 18 28 43 64 }
+    { 23 42 68; 32 47 68; 32 47 68 }
+    { 41 67; 53 74; 52 73 }
+    { 66; 81; 79 }
+    { 10 22 40 65; 16 26 41 62; 19 29 44 65 }
+    { 21 39 64; 31 46 67; 33 48 69 }
+    { 38 63; 52 73; 53 74 }
+    { 62; 80; 80 }
+    { 20 37 61; 30 45 66; 34 49 70 }
+    { 36 60; 51 72; 54 75 }
+    { 59; 79; 81 }
+    { 35 58; 50 71; 55 76 }
+    { 57; 78; 82 }
+    { 56; 77; 83 }
+}
+straight! { straight_6 84
+    { 0 3 9 19 34 55 83; 0 1 4 10 20 35 56; 0 1 4 10 20 35 56 }
+    { 2 8 18 33 54 82; 3 6 12 22 37 58; 3 6 12 22 37 58 }
+    { 7 17 32 53 81; 9 15 25 40 61; 9 15 25 40 61 }
+    { 16 31 52 80; 19 29 44 65; 19 29 44 65 }
+    { 30 51 79; 34 49 70; 34 49 70 }
+    { 50 78; 55 76; 55 76 }
+    { 77; 83; 83 }
+    { 1 6 15 29 49 76; 2 5 11 21 36 57; 2 5 11 21 36 57 }
+    { 5 14 28 48 75; 8 14 24 39 60; 8 14 24 39 60 }
+    { 13 27 47 74; 18 28 43 64; 18 28 43 64 }
+    { 26 46 73; 33 48 69; 33 48 69 }
+    { 45 72; 54 75; 54 75 }
+    { 71; 82; 82 }
+    { 4 12 25 44 70; 7 13 23 38 59; 7 13 23 38 59 }
+    { 11 24 43 69; 17 27 42 63; 17 27 42 63 }
+    { 23 42 68; 32 47 68; 32 47 68 }
+    { 41 67; 53 74; 53 74 }
+    { 66; 81; 81 }
+    { 10 22 40 65; 16 26 41 62; 16 26 41 62 }
+    { 21 39 64; 31 46 67; 31 46 67 }
+    { 38 63; 52 73; 52 73 }
+    { 62; 80; 80 }
+    { 20 37 61; 30 45 66; 30 45 66 }
+    { 36 60; 51 72; 51 72 }
+    { 59; 79; 79 }
+    { 35 58; 50 71; 50 71 }
+    { 57; 78; 78 }
+    { 56; 77; 77 }
+}
 
 #[cfg(test)]
 mod tests {
@@ -207,8 +377,8 @@ mod tests {
     proptest! {
         #[test]
         fn straight_line_code_equals_the_general_path(
-            degree in 1usize..5, kind in 0u8..3,
-            seed in proptest::collection::vec(-1.0..1.0f64, 35),
+            degree in 1usize..7, kind in 0u8..3,
+            seed in proptest::collection::vec(-1.0..1.0f64, 84),
         ) {
             let c = &seed[..count(degree)];
             let (near, far) = halved(degree, kind, c);
