@@ -96,8 +96,7 @@ fn frustum() {
 /// A block of 1 × 2 × 3 under a shear keeps its volume; planes are exact at any tolerance.
 #[test]
 fn sheared_block_is_exact() {
-    let source =
-        "multmatrix([[1,0.3,0.2,5],[0,1,0.4,-7],[0,0,1,11],[0,0,0,1]]) cube([1,2,3]);";
+    let source = "multmatrix([[1,0.3,0.2,5],[0,1,0.4,-7],[0,0,1,11],[0,0,0,1]]) cube([1,2,3]);";
     let converted = convert(source, 0.5);
     assert!((converted.properties.volume - 6.0).abs() <= 6e-13);
     assert_eq!(converted.groups.faces.len(), 6);

@@ -7,10 +7,7 @@ use stages::convert_model;
 use std::fs;
 use subdiv::Rule;
 
-const FOLDER: &str = concat!(
-    env!("CARGO_MANIFEST_DIR"),
-    "/fixtures/third_party/openscad"
-);
+const FOLDER: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/fixtures/third_party/openscad");
 
 #[test]
 fn core_dumps_have_their_reference_values() {
@@ -35,7 +32,9 @@ fn core_dumps_have_their_reference_values() {
             .iter()
             .map(|x| x.as_f64().unwrap())
             .collect();
-        let size = (0..3).map(|a| bounds[a + 3] - bounds[a]).fold(0.0, f64::max);
+        let size = (0..3)
+            .map(|a| bounds[a + 3] - bounds[a])
+            .fold(0.0, f64::max);
         let tolerance = 1e-3 * size;
         let converted = convert_model(&model, Rule::Tolerance(tolerance));
         let properties = &converted.properties;
@@ -51,7 +50,10 @@ fn core_dumps_have_their_reference_values() {
         for axis in 0..3 {
             for (side, corner) in found.iter().enumerate() {
                 let off = (corner[axis] - bounds[3 * side + axis]).abs();
-                assert!(off <= allowed, "{file}: box off by {off} > {allowed}, axis {axis}, side {side}: {corner}");
+                assert!(
+                    off <= allowed,
+                    "{file}: box off by {off} > {allowed}, axis {axis}, side {side}: {corner}"
+                );
             }
         }
         let bodies = number("bodies").unwrap() as usize;
@@ -62,7 +64,11 @@ fn core_dumps_have_their_reference_values() {
         if converted.report.uncertified_leaves == 0 {
             let genus = number("genus").unwrap() as i64;
             let shells = converted.shells.shells.len() as i64;
-            assert_eq!(converted.shells.genus() as i64 - shells + 1, genus, "{file}");
+            assert_eq!(
+                converted.shells.genus() as i64 - shells + 1,
+                genus,
+                "{file}"
+            );
             compared += 1;
         }
     }

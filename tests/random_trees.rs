@@ -133,7 +133,10 @@ fn place(model: &mut ModelBuilder, node: NodeId, placement: Placement) -> NodeId
         [x.z, y.z, z.z, at[2]],
         [0.0, 0.0, 0.0, 1.0],
     ];
-    model.add(Node::Instance(Transform::from_columns(&matrix).unwrap(), node))
+    model.add(Node::Instance(
+        Transform::from_columns(&matrix).unwrap(),
+        node,
+    ))
 }
 
 /// Depth is at most four by construction of the strategy.
@@ -223,8 +226,14 @@ fn random_trees_are_manifold() {
     let paths: Vec<PathBuf> = results.into_iter().filter_map(|r| r.0).collect();
     // The generator must reach what it is made for.
     assert!(paths.len() as u64 * 2 > count, "mostly empty solids");
-    assert!(split as u64 * 50 > count, "too few touching solids: {split}");
-    println!("{count} trees, seed {seed}: {} not empty, {split} touch", paths.len());
+    assert!(
+        split as u64 * 50 > count,
+        "too few touching solids: {split}"
+    );
+    println!(
+        "{count} trees, seed {seed}: {} not empty, {split} touch",
+        paths.len()
+    );
     for chunk in paths.chunks(500) {
         let reports = support::manifold_report(chunk);
         for (path, report) in chunk.iter().zip(&reports) {
