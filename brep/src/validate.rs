@@ -17,6 +17,11 @@ impl<T> Valid<T> {
     pub fn into_inner(self) -> T {
         self.0
     }
+
+    /// Takes back a value that was looked at and not changed.
+    pub(crate) fn untouched(value: T) -> Self {
+        Self(value)
+    }
 }
 
 impl<T> Deref for Valid<T> {

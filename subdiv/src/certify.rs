@@ -2,10 +2,13 @@
 //!
 //! In a simplex, with ℓ the affine interpolant of p at the vertices and ξ_α the domain points:
 //!
-//! * |p − ℓ| ≤ δ = (1 − 4^(1−n)) · max |c_α − ℓ(ξ_α)|: the four corner coefficients agree, and the
-//!   other Bernstein polynomials sum up to at most that factor;
+//! * r = p − ℓ lies between (1 − 4^(1−n)) · min and max of c_α − ℓ(ξ_α) and zero: the four corner
+//!   coefficients agree, and the other Bernstein polynomials sum up to at most that factor. δ is
+//!   the larger bound's magnitude, |r| ≤ δ;
+//! * ω = max r − min r bounds |p| in the mesh: its corners lie on p = 0, where ℓ = −r, or on
+//!   ℓ = 0, and between them ℓ is interpolated;
 //! * g = min of the Bernstein coefficients of ∂p/∂u, u the direction of ∇ℓ: where g > 0 the zero
-//!   set is a graph over the plane across u, and p = 0 is reached from ℓ = 0 within δ/g;
+//!   set is a graph over the plane across u, and p = 0 is reached from the mesh within ω/g;
 //! * φ = largest angle between u and a control gradient.
 //!
 //! Where all outward normals have a common direction, several surfaces are as good as one: the
@@ -80,11 +83,13 @@ pub(crate) struct Sheet {
     pub values: [f64; 4],
     /// δ: bound on |p − ℓ|.
     pub delta: f64,
+    /// ω: bound on |p| in the mesh.
+    pub swing: f64,
     /// ∇ℓ normalized.
     pub normal: DVec3,
     /// |∇ℓ|.
     pub slope: f64,
-    /// δ/g: bound on the distance between p = 0 and ℓ = 0.
+    /// ω/g: bound on the distance between the mesh and p = 0.
     pub deviation: f64,
     /// φ, in radians; computed only where sheets meet.
     pub spread_rad: f64,
@@ -110,24 +115,28 @@ pub(crate) fn sheet(
         return Some(Sheet {
             values,
             delta: 0.0,
+            swing: 0.0,
             normal,
             slope,
             deviation: 0.0,
             spread_rad: 0.0,
         });
     }
-    let delta = (if n == 2 {
-        quadric_delta(coefficients)
+    let (low, high) = if n == 2 {
+        quadric_remainder(coefficients)
     } else {
-        let mut delta = 0.0f64;
+        let (mut low, mut high) = (0.0f64, 0.0f64);
         for (c, b) in coefficients.iter().zip(&table.points) {
             let affine = b[0] * values[0] + b[1] * values[1] + b[2] * values[2] + b[3] * values[3];
-            delta = delta.max((c - affine).abs());
+            low = low.min(c - affine);
+            high = high.max(c - affine);
         }
-        delta
-    }) * (1.0 - 0.25f64.powf(n as f64 - 1.0));
+        (low, high)
+    };
+    let share = 1.0 - 0.25f64.powf(n as f64 - 1.0);
+    let (delta, swing) = (share * high.max(-low), share * (high - low));
     // Every coefficient of the derivative must exceed this; most fail at the first.
-    let needed = delta / tolerance;
+    let needed = swing / tolerance;
     let along = gradients.map(|g| g.dot(normal) * n as f64);
     let mut steepness = f64::INFINITY;
     for raised in &table.raised {
@@ -142,24 +151,33 @@ pub(crate) fn sheet(
     Some(Sheet {
         values,
         delta,
+        swing,
         normal,
         slope,
-        deviation: delta / steepness,
+        deviation: swing / steepness,
         spread_rad: 0.0,
     })
 }
 
-/// δ of a quadric: its six edge coefficients against the means of the vertex values.
-fn quadric_delta(c: &[f64]) -> f64 {
+/// Range, with zero, of a quadric's six edge coefficients less the means of the vertex values.
+fn quadric_remainder(c: &[f64]) -> (f64, f64) {
     let Some(c) = c.first_chunk::<10>() else {
-        return f64::INFINITY;
+        return (f64::NEG_INFINITY, f64::INFINITY);
     };
-    let off = |edge: usize, a: usize, b: usize| (c[edge] - 0.5 * (c[a] + c[b])).abs();
-    let (x, y) = (
-        off(1, 0, 4).max(off(2, 0, 7)),
-        off(3, 0, 9).max(off(5, 4, 7)),
-    );
-    x.max(y).max(off(6, 4, 9).max(off(8, 7, 9)))
+    let (mut low, mut high) = (0.0f64, 0.0f64);
+    for (edge, a, b) in [
+        (1, 0, 4),
+        (2, 0, 7),
+        (3, 0, 9),
+        (5, 4, 7),
+        (6, 4, 9),
+        (8, 7, 9),
+    ] {
+        let off = c[edge] - 0.5 * (c[a] + c[b]);
+        low = low.min(off);
+        high = high.max(off);
+    }
+    (low, high)
 }
 
 /// Largest angle between the control gradients and `normal`, in radians.

@@ -6,7 +6,7 @@ use std::sync::atomic::{AtomicBool, AtomicU64, Ordering::Relaxed};
 
 /// Peak bytes a leaf costs, all stages together: some two triangles with their share of
 /// vertices, names and half-edges (measured: `docs/performance.md`).
-const BYTES_PER_CELL: u64 = 700;
+const BYTES_PER_CELL: u64 = 400;
 
 /// Shared by all threads of a run.
 pub(crate) struct Budget<'a> {

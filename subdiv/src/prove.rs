@@ -149,7 +149,7 @@ impl<'a> Prover<'a> {
             if slope < 0.25 * sheet.slope {
                 return None;
             }
-            largest = largest.max(sheet.delta / slope);
+            largest = largest.max(sheet.swing / slope);
         }
         Some(largest)
     }

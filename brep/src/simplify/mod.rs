@@ -36,6 +36,9 @@ pub fn remove_degenerate(brep: Valid<Brep>) -> Result<(Valid<Brep>, Simplified),
         remaining_edges,
         remaining_facets,
     };
+    if collapsed_edges == 0 && flipped_edges == 0 {
+        return Ok((Valid::untouched(brep), counts));
+    }
     Ok((brep.validate()?, counts))
 }
 

@@ -1,0 +1,96 @@
+//! Every model in `fixtures/`, in every mesh format: closed in manifold3d's eyes, and the same
+//! bytes for any number of threads.
+
+mod stages;
+mod support;
+
+use io::write::{gltf, obj, stl};
+use stages::{Converted, convert_solid, read};
+use std::fs;
+use std::path::{Path, PathBuf};
+use subdiv::{Rule, Settings};
+
+const ROOT: &str = env!("CARGO_MANIFEST_DIR");
+
+fn models() -> Vec<PathBuf> {
+    let folders = [
+        "fixtures/solids",
+        "fixtures/models",
+        "fixtures/third_party/openscad",
+    ];
+    let mut models: Vec<PathBuf> = folders
+        .iter()
+        .flat_map(|folder| fs::read_dir(Path::new(ROOT).join(folder)).unwrap())
+        .map(|entry| entry.unwrap().path())
+        .filter(|path| path.extension().is_some_and(|end| end == "csg"))
+        .collect();
+    models.sort();
+    models
+}
+
+/// Converts at a tolerance of 1 % of the diagonal.
+fn convert_file(path: &Path, threads: usize) -> Converted {
+    let model = read(&fs::read_to_string(path).unwrap());
+    let solid = csg::Solid::build(&model, None).unwrap();
+    let tolerance = if solid.extent.is_empty() {
+        1.0
+    } else {
+        0.01 * solid.extent.diagonal()
+    };
+    let settings = Settings {
+        threads: Some(threads),
+        ..Settings::new(Rule::Tolerance(tolerance))
+    };
+    convert_solid(solid, &settings)
+}
+
+fn files(converted: &Converted) -> [(&'static str, Vec<u8>); 3] {
+    let brep = &converted.brep;
+    let materials = &converted.solid.materials;
+    let mut bytes = [Vec::new(), Vec::new(), Vec::new()];
+    obj::write(brep, &obj::Options::default(), &mut bytes[0]).unwrap();
+    gltf::write(brep, materials, &gltf::Options::default(), &mut bytes[1]).unwrap();
+    stl::write(brep, &mut bytes[2]).unwrap();
+    let [obj, glb, stl] = bytes;
+    [("obj", obj), ("glb", glb), ("stl", stl)]
+}
+
+#[test]
+fn every_fixture_is_manifold() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut paths = Vec::new();
+    for model in models() {
+        let converted = convert_file(&model, 2);
+        let name = model.file_stem().unwrap().to_string_lossy().into_owned();
+        if converted.brep.is_empty() {
+            assert!(name.starts_with("nullspace"), "{name} is empty");
+            continue;
+        }
+        for (end, bytes) in files(&converted) {
+            // STL has no indices for manifold3d to judge.
+            if end != "stl" {
+                let path = folder.path().join(format!("{name}.{end}"));
+                fs::write(&path, bytes).unwrap();
+                paths.push(path);
+            }
+        }
+    }
+    assert!(paths.len() >= 70, "{} files", paths.len());
+    for (path, report) in paths.iter().zip(support::manifold_report(&paths)) {
+        assert_eq!(report.status, "NoError", "{}", path.display());
+    }
+}
+
+#[test]
+fn bytes_do_not_depend_on_threads() {
+    for name in ["solids/S2_demo", "solids/S5_ring128", "models/tee"] {
+        let path = Path::new(ROOT).join(format!("fixtures/{name}.csg"));
+        let expected = files(&convert_file(&path, 1));
+        for threads in [2, 7] {
+            let found = files(&convert_file(&path, threads));
+            for ((end, a), (_, b)) in expected.iter().zip(&found) {
+                assert!(a == b, "{name}.{end} differs with {threads} threads");
+            }
+        }
+    }
+}
