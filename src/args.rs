@@ -51,6 +51,8 @@ pub(crate) enum Command {
     Convert(ConvertArgs),
     /// Draw a picture of a model
     View(ViewArgs),
+    /// Print what a model consists of, without converting it
+    Info(InfoArgs),
     /// Print a script that completes commands and options in a shell
     Completions {
         /// The shell
@@ -148,6 +150,15 @@ pub(crate) struct ModelArgs {
         help_heading = "Precision"
     )]
     pub(crate) criterion: Criterion,
+    /// Which facets planar faces have
+    #[arg(
+        long,
+        value_name = "KIND",
+        default_value = "merged",
+        hide_short_help = true,
+        help_heading = "Precision"
+    )]
+    pub(crate) mesh: MeshKind,
     /// Clip the model to this box; needed if it is unbounded
     #[arg(
         long = "box",
@@ -213,6 +224,25 @@ pub(crate) struct ViewArgs {
     pub(crate) from: Side,
 }
 
+/// A model to describe.
+#[derive(Args, Debug)]
+pub(crate) struct InfoArgs {
+    /// The model to read; `-` is standard input
+    #[arg(value_name = "IN")]
+    pub(crate) input: PathBuf,
+    /// Print JSON
+    #[arg(long)]
+    pub(crate) json: bool,
+    /// Clip the model to this box; needed if it is unbounded
+    #[arg(
+        long = "box",
+        num_args = 6,
+        allow_negative_numbers = true,
+        value_names = ["XMIN", "YMIN", "ZMIN", "XMAX", "YMAX", "ZMAX"]
+    )]
+    pub(crate) clip: Option<Vec<f64>>,
+}
+
 /// Where the viewer of a picture stands.
 #[derive(ValueEnum, Clone, Copy, PartialEq, Eq, Debug)]
 pub(crate) enum Side {
@@ -239,6 +269,15 @@ pub(crate) enum Criterion {
     Bezier,
     /// By Rivlin's sharper bound
     Rivlin,
+}
+
+/// Which facets planar faces have.
+#[derive(ValueEnum, Clone, Copy, PartialEq, Eq, Debug)]
+pub(crate) enum MeshKind {
+    /// Triangles between the vertices of their edges
+    Merged,
+    /// Those of the subdivision, one or more in each leaf
+    Leaves,
 }
 
 /// Formats that can be read.

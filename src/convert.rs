@@ -102,6 +102,15 @@ fn details(report: &Report) -> String {
         grouped(counts.brep_edges),
         grouped(counts.brep_vertices)
     ));
+    if counts.merged_faces > 0 {
+        lines.push(format!(
+            "{:>12}: {} planar faces merged, {} triangles before, {} after",
+            "merging",
+            grouped(counts.merged_faces),
+            grouped(counts.leaf_facets),
+            grouped(counts.facets)
+        ));
+    }
     if let Some(bytes) = report.peak_memory_bytes {
         lines.push(format!("{:>12}: {} MiB", "memory", grouped(bytes >> 20)));
     }

@@ -7,6 +7,7 @@ mod args;
 mod convert;
 mod excerpt;
 mod failure;
+mod info;
 mod input;
 mod memory;
 mod output;
@@ -54,6 +55,7 @@ fn dispatch(cli: Cli, talk: Talk) -> Result<(), Failure> {
         None => convert::run(&Conversion::new(cli.convert)?, talk),
         Some(Command::Convert(args)) => convert::run(&Conversion::new(args)?, talk),
         Some(Command::View(args)) => view::run(args, talk),
+        Some(Command::Info(args)) => info::run(args, talk),
         Some(Command::Completions { shell }) => shell::completions(shell),
         Some(Command::Man) => shell::manual(),
     }

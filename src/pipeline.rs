@@ -1,6 +1,6 @@
 //! The stages in order: text, model, solid, fragments, boundary.
 
-use crate::args::InputFormat;
+use crate::args::{InputFormat, MeshKind};
 use crate::failure::Failure;
 use crate::input::Loaded;
 use crate::progress::{self, Progress};
@@ -8,8 +8,8 @@ use crate::report::Report;
 use crate::run::Job;
 use crate::talk::Talk;
 use brep::simplify::remove_degenerate;
-use brep::{Brep, Groups, Properties, Shells, Valid};
-use csg::Solid;
+use brep::{Brep, Groups, Properties, Retriangulated, Shells, Valid};
+use csg::{PrimitiveId, Solid};
 use subdiv::{Fragments, Rule};
 
 /// A solid's boundary, ready to be written.
@@ -44,6 +44,20 @@ pub(crate) fn run(
     let brep = report.timed("stitching", || stitch(&fragments))?;
     drop(fragments);
     stop_if_interrupted()?;
+
+    let brep = match job.mesh {
+        MeshKind::Leaves => {
+            report.counts.leaf_facets = brep.facet_count() as u64;
+            brep
+        }
+        MeshKind::Merged => {
+            progress.begin("merging");
+            let (brep, counts) = report.timed("merging", || merge(brep, &solid));
+            report.add_merging(&counts);
+            stop_if_interrupted()?;
+            brep
+        }
+    };
 
     progress.begin("measuring");
     let (groups, shells, properties) = report.timed("measuring", || {
@@ -89,6 +103,14 @@ fn stitch(fragments: &Fragments) -> Result<Valid<Brep>, Failure> {
     let valid = stitched.validate().map_err(bug)?;
     let (clean, _) = remove_degenerate(valid).map_err(bug)?;
     Ok(clean)
+}
+
+/// A plane needs no facets but those between its edges.
+fn merge(brep: Valid<Brep>, solid: &Solid) -> (Valid<Brep>, Retriangulated) {
+    brep::retriangulate(brep, |PrimitiveId(at)| {
+        let primitive = solid.primitives.get(at as usize);
+        primitive.is_some_and(|primitive| primitive.polynomial.degree() == 1)
+    })
 }
 
 fn stop_if_interrupted() -> Result<(), Failure> {

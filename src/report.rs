@@ -3,7 +3,7 @@
 //! Lengths are in model units, times in seconds. Names are stable within a `schema_version`;
 //! what could not be measured or proved is null.
 
-use brep::{Brep, Groups, Properties, Shells};
+use brep::{Brep, Groups, Properties, Retriangulated, Shells};
 use serde::Serialize;
 use std::time::Instant;
 
@@ -72,6 +72,7 @@ pub(crate) struct SettingsReport {
     pub(crate) level: Option<u8>,
     pub(crate) max_level: Option<u8>,
     pub(crate) criterion: &'static str,
+    pub(crate) mesh: &'static str,
     /// Smallest, then largest coordinates.
     #[serde(rename = "box")]
     pub(crate) clip: Option<[f64; 6]>,
@@ -94,6 +95,12 @@ pub(crate) struct Stage {
 pub(crate) struct Counts {
     pub(crate) leaves: u64,
     pub(crate) bisections: u64,
+    /// Facets before planar faces were merged.
+    pub(crate) leaf_facets: u64,
+    /// Planar faces triangulated from their edges.
+    pub(crate) merged_faces: u64,
+    /// Planar faces that were to be merged and could not.
+    pub(crate) unmerged_faces: u64,
     pub(crate) facets: u64,
     pub(crate) vertices: u64,
     pub(crate) brep_faces: u64,
@@ -173,6 +180,13 @@ impl Report {
         let stages = names.into_iter().zip(of.seconds);
         self.stages
             .extend(stages.map(|(name, seconds)| Stage { name, seconds }));
+    }
+
+    /// What became of planar faces.
+    pub(crate) fn add_merging(&mut self, of: &Retriangulated) {
+        self.counts.leaf_facets = of.facets_before as u64;
+        self.counts.merged_faces = of.faces as u64;
+        self.counts.unmerged_faces = of.kept as u64;
     }
 
     /// What is known about the solid before it is subdivided.

@@ -36,6 +36,7 @@ pub(crate) struct Job {
     pub(crate) precision: Precision,
     pub(crate) max_level: Option<u8>,
     pub(crate) criterion: subdiv::Criterion,
+    pub(crate) mesh: args::MeshKind,
     pub(crate) threads: Option<usize>,
     pub(crate) max_cells: u64,
     pub(crate) max_memory_bytes: u64,
@@ -102,6 +103,7 @@ impl Job {
                 args::Criterion::Bezier => subdiv::Criterion::Bezier,
                 args::Criterion::Rivlin => subdiv::Criterion::Rivlin,
             },
+            mesh: args.mesh,
             threads: args.threads.map(usize::from),
             max_cells: args.max_cells.get(),
             max_memory_bytes: memory.unwrap_or(FALLBACK_MEMORY),
@@ -143,6 +145,10 @@ impl Job {
                 subdiv::Criterion::Rivlin => "rivlin",
                 subdiv::Criterion::Bezier => "bezier",
             },
+            mesh: match self.mesh {
+                args::MeshKind::Merged => "merged",
+                args::MeshKind::Leaves => "leaves",
+            },
             clip,
             facet_limit: self.read.facet_limit,
             max_degree: self.read.max_degree,
@@ -180,7 +186,7 @@ impl Conversion {
 }
 
 /// Six finite numbers, the first three below the last three.
-fn clip_box(numbers: &[f64]) -> Result<Aabb, Failure> {
+pub(crate) fn clip_box(numbers: &[f64]) -> Result<Aabb, Failure> {
     let wrong = |why: &str| Failure::Usage(format!("--box: {why}"));
     let &[a, b, c, d, e, f] = numbers else {
         return Err(wrong("six numbers are needed"));

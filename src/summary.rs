@@ -58,7 +58,7 @@ fn facts(report: &Report) -> Vec<String> {
 }
 
 /// A number of things: `1 solid`, `12,340 triangles`.
-fn counted(count: u64, thing: &str) -> String {
+pub(crate) fn counted(count: u64, thing: &str) -> String {
     let plural = if count == 1 { "" } else { "s" };
     format!("{} {thing}{plural}", grouped(count))
 }
@@ -77,7 +77,7 @@ pub(crate) fn grouped(number: u64) -> String {
 }
 
 /// With this many significant digits, without trailing zeros: `18729.7`, `1e-9`.
-fn significant(value: f64, digits: usize) -> String {
+pub(crate) fn significant(value: f64, digits: usize) -> String {
     let scientific = format!("{value:.*e}", digits.saturating_sub(1));
     let rounded: f64 = scientific.parse().unwrap_or(value);
     if rounded == 0.0 || (1e-4..1e9).contains(&rounded.abs()) {

@@ -50,7 +50,11 @@ pub fn retriangulate(
     is_plane: impl Fn(PrimitiveId) -> bool,
 ) -> (Valid<Brep>, Retriangulated) {
     let groups = Groups::of(&brep);
-    let planar = groups.faces.iter().filter(|f| is_plane(f.primitive)).count();
+    let planar = groups
+        .faces
+        .iter()
+        .filter(|f| is_plane(f.primitive))
+        .count();
     let mut counts = Retriangulated {
         faces: 0,
         kept: planar,

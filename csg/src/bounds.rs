@@ -4,7 +4,7 @@ mod planes;
 mod quadric;
 
 pub(crate) use planes::of_half_spaces;
-pub(crate) use quadric::quadric_support;
+pub(crate) use quadric::{quadric_support, symmetric_eigen};
 
 use crate::Aabb;
 use crate::matrix::{IDENTITY, Rows};

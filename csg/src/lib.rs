@@ -54,6 +54,7 @@ mod shape;
 mod shapes;
 mod simplify;
 mod solid;
+mod surface;
 mod survey;
 mod ternary;
 mod transform;
@@ -71,5 +72,6 @@ pub use shapes::{
     Torus,
 };
 pub use solid::{Material, NearlyEqual, Primitive, Solid};
+pub use surface::{QuadricKind, Surface};
 pub use ternary::{LocalizeScratch, Ternary, localize};
 pub use transform::Transform;

@@ -73,6 +73,12 @@ impl ModelBuilder {
         NodeId(u32::try_from(self.nodes.len() - 1).unwrap_or(u32::MAX))
     }
 
+    /// A node added before.
+    #[must_use]
+    pub fn get(&self, id: NodeId) -> Option<&Node> {
+        self.nodes.get(id.index())
+    }
+
     /// The id of this material, equal ones being one.
     pub fn material(&mut self, material: Material) -> MaterialId {
         let at = self.materials.iter().position(|m| *m == material);

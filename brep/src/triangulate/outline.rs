@@ -2,7 +2,7 @@
 
 use super::planar::{self, Outline, Refusal};
 use crate::group::{Edge, FaceId, Groups};
-use crate::topology::{Brep, HalfEdgeKey, VertexKey};
+use crate::topology::{Brep, HalfEdgeKey, VertexKey, VertexView};
 use crate::validate::Valid;
 use csg::PrimitiveId;
 use glam::DVec3;
@@ -63,7 +63,7 @@ impl Outlines {
         is_plane: &impl Fn(PrimitiveId) -> bool,
     ) -> Self {
         let mut this = Self {
-            positions: brep.vertices().map(|vertex| vertex.position()).collect(),
+            positions: brep.vertices().map(VertexView::position).collect(),
             numbers: brep.number_vertices(),
             corners: Vec::new(),
             loops: Vec::new(),
@@ -89,7 +89,7 @@ impl Outlines {
         }
         this.find_loops(brep, groups);
         let largest = (this.positions.iter()).fold(0.0, |m: f64, p| m.max(p.abs().max_element()));
-        this.keep_only_flat_faces(FLATNESS * largest);
+        this.keep_only_flat_faces(brep, groups, FLATNESS * largest);
         for edge in &groups.edges {
             this.add_chain(brep, groups, edge, FLATNESS * largest);
         }
@@ -122,7 +122,8 @@ impl Outlines {
         for of_face in found.chunk_by(|a, b| a.0 == b.0) {
             let face = &mut self.faces[of_face[0].0];
             let start = self.loops.len();
-            self.loops.extend(of_face.iter().map(|(_, corners)| corners.clone()));
+            self.loops
+                .extend(of_face.iter().map(|(_, corners)| corners.clone()));
             face.loops = start..self.loops.len();
             for (_, corners) in of_face {
                 face.excess -= i64::try_from(corners.len()).unwrap_or(i64::MAX);
@@ -130,24 +131,24 @@ impl Outlines {
         }
     }
 
-    /// A plane through the mean of the corners, perpendicular to the area vector, must hold all
-    /// corners.
-    fn keep_only_flat_faces(&mut self, allowed: f64) {
-        for face in &mut self.faces {
-            let Some(normal) = face.normal.try_normalize() else {
-                face.is_candidate = false;
-                continue;
-            };
-            let corners = || {
-                let loops = self.loops[face.loops.clone()].iter();
-                loops.flat_map(|corners| &self.corners[corners.clone()])
-            };
-            let heights = || corners().map(|&v| normal.dot(self.positions[v as usize]));
-            let (low, high) = heights().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), z| {
-                (l.min(z), h.max(z))
-            });
-            // Without loops, not flat either.
-            face.is_candidate &= (0.0..=allowed).contains(&(high - low));
+    /// Facets of a flat face lie between two planes this close, perpendicular to its area vector.
+    fn keep_only_flat_faces(&mut self, brep: &Brep, groups: &Groups, allowed: f64) {
+        let normals = self
+            .faces
+            .iter()
+            .map(|face| face.normal.normalize_or_zero());
+        let normals: Vec<DVec3> = normals.collect();
+        let mut heights = vec![(f64::INFINITY, f64::NEG_INFINITY); normals.len()];
+        for facet in brep.facets() {
+            let FaceId(face) = groups.face_of[facet.key()];
+            let (low, high) = &mut heights[face as usize];
+            for position in facet.positions() {
+                let height = normals[face as usize].dot(position);
+                (*low, *high) = (low.min(height), high.max(height));
+            }
+        }
+        for ((face, (low, high)), normal) in self.faces.iter_mut().zip(heights).zip(normals) {
+            face.is_candidate &= high - low <= allowed && normal != DVec3::ZERO;
         }
     }
 

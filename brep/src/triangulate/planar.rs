@@ -86,9 +86,8 @@ pub(super) fn fill(
     let mut outline_edge = vec![NONE; cdt.num_directed_edges()];
     let mut starts = Vec::with_capacity(outline.len());
     for (at, &following) in (0..).zip(&outline.following) {
-        let [from, to] = [at, following].map(|corner| {
-            FixedVertexHandle::from_index(places.of_corner[corner as usize])
-        });
+        let [from, to] = [at, following]
+            .map(|corner| FixedVertexHandle::from_index(places.of_corner[corner as usize]));
         let edge = cdt.get_edge_from_neighbors(from, to);
         let edge = edge.ok_or(Refusal::Overlapping)?;
         let slot = &mut outline_edge[edge.fix().index()];
@@ -145,7 +144,11 @@ impl Places {
     fn of(outline: &Outline, positions: &[DVec3], normal: DVec3) -> Self {
         let largest = normal.abs().max_position();
         let (u, v) = ((largest + 1) % 3, (largest + 2) % 3);
-        let (u, v) = if normal[largest] < 0.0 { (v, u) } else { (u, v) };
+        let (u, v) = if normal[largest] < 0.0 {
+            (v, u)
+        } else {
+            (u, v)
+        };
         // Adding zero makes −0 and 0 one place.
         let projected: Vec<Point2<f64>> = (outline.corners.iter())
             .map(|&vertex| positions[vertex as usize])

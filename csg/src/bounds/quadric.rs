@@ -70,7 +70,7 @@ fn elliptic_support(matrix: DMat3, linear: DVec3, constant: f64) -> Support<'sta
 /// Eigenvalues and eigenvectors (as columns) of a symmetric matrix, by Jacobi's rotations.
 ///
 /// Diagonal matrices come back as they are.
-fn symmetric_eigen(matrix: DMat3) -> (DVec3, DMat3) {
+pub(crate) fn symmetric_eigen(matrix: DMat3) -> (DVec3, DMat3) {
     let mut a = matrix.to_cols_array_2d();
     let mut v = DMat3::IDENTITY.to_cols_array_2d();
     // Quadratic convergence: four sweeps reach rounding, the rest is for safety.
