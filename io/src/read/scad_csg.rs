@@ -8,7 +8,8 @@
 //! value     := NUMBER | 'true' | 'false' | 'undef' | 'inf' | 'nan' | STRING | '[' (value (',' value)*)? ']'
 //! ```
 //! Nodes: `union group render intersection difference color multmatrix translate rotate scale
-//! mirror cube sphere cylinder` and convex `polyhedron`s, as OpenSCAD means them; of this project's own:
+//! mirror cube sphere cylinder polyhedron linear_extrude rotate_extrude square circle polygon hull`,
+//! as OpenSCAD means them (`docs/openscad.md` says how exactly); of this project's own:
 //!
 //! | node | solid |
 //! |---|---|
@@ -25,11 +26,14 @@
 mod arguments;
 mod ast;
 mod color;
+mod combine;
 mod complaints;
 mod evaluate;
+mod figure;
 mod motion;
 mod nodes;
 mod parse;
+mod point_hull;
 mod polyhedron;
 mod program;
 mod shapes;

@@ -3,14 +3,16 @@
 use super::arguments::Arguments;
 use super::ast::{Ast, Call};
 use super::color;
+use super::combine::Operation;
 use super::complaints::{Complaints, Reported};
+use super::figure::{self, Figure, FigureId, Figures};
 use super::motion::{self, Moved};
 use super::nodes::{self, Entry, Kind};
 use super::shapes::{ShapeReader, Volume};
 use super::token::Span;
 use crate::read::ReadOptions;
 use crate::read::diagnostic::{Diagnostic, Diagnostics, Source};
-use csg::{MaterialId, Model, ModelBuilder, Node, NodeId, Transform};
+use csg::{Model, ModelBuilder, Node, NodeId};
 
 /// Builds the model; the second part are warnings.
 ///
@@ -28,6 +30,7 @@ pub(super) fn evaluate(
         shapes: ShapeReader::new(options.facet_limit, options.max_degree),
         complaints: Complaints::new(source),
         builder: ModelBuilder::new(),
+        figures: Figures::default(),
         operands: Vec::new(),
         frames: Vec::new(),
     };
@@ -37,14 +40,12 @@ pub(super) fn evaluate(
     let root = match result {
         Operand::Solid(root) => root,
         Operand::Nothing | Operand::Unusable => builder.add(Node::Union(Vec::new())),
-        Operand::Flat(at) => {
+        Operand::Flat(_, at) => {
             let name = at.of(text);
             complaints.error(
                 at,
                 format!("the model is 2-D only: `{name}` has no volume"),
-                "only 3-D models can be converted; linear_extrude and rotate_extrude are not \
-                 supported yet"
-                    .to_owned(),
+                "make a solid of it with linear_extrude or rotate_extrude".to_owned(),
             );
             builder.add(Node::Union(Vec::new()))
         }
@@ -58,41 +59,36 @@ pub(super) fn evaluate(
 
 /// The value of a subtree.
 #[derive(Clone, Copy)]
-enum Operand {
+pub(super) enum Operand {
     /// No point, as an empty `group` has it.
     Nothing,
     /// A solid.
     Solid(NodeId),
     /// A plane figure; the place of the first node that makes it one.
-    Flat(Span),
+    Flat(FigureId, Span),
     /// An error was reported.
     Unusable,
 }
 
 /// A node whose children are being evaluated.
-struct Frame {
-    operation: Operation,
+pub(super) struct Frame {
+    pub(super) operation: Operation,
+    /// Its name; empty for the whole file.
+    pub(super) name: Span,
     /// Index after its subtree.
     end: u32,
     /// Number of operands before its own.
-    first: usize,
+    pub(super) first: usize,
 }
 
-enum Operation {
-    Union,
-    Intersection,
-    Difference,
-    Move(Transform),
-    Paint(MaterialId),
-}
-
-struct Evaluator<'a, 's> {
-    text: &'a str,
+pub(super) struct Evaluator<'a, 's> {
+    pub(super) text: &'a str,
     ast: &'a Ast,
     shapes: ShapeReader,
-    complaints: Complaints<'s>,
-    builder: ModelBuilder,
-    operands: Vec<Operand>,
+    pub(super) complaints: Complaints<'s>,
+    pub(super) builder: ModelBuilder,
+    pub(super) figures: Figures,
+    pub(super) operands: Vec<Operand>,
     frames: Vec<Frame>,
 }
 
@@ -101,6 +97,7 @@ impl Evaluator<'_, '_> {
         let (mut at, end) = self.model();
         self.frames.push(Frame {
             operation: Operation::Union,
+            name: Span::default(),
             end,
             first: 0,
         });
@@ -164,6 +161,7 @@ impl Evaluator<'_, '_> {
             Ok(Step::Open(operation)) => {
                 self.frames.push(Frame {
                     operation,
+                    name: call.name,
                     end: call.end,
                     first: self.operands.len(),
                 });
@@ -182,22 +180,15 @@ impl Evaluator<'_, '_> {
         is_leaf: bool,
         entry: &'static Entry,
     ) -> Result<Step, Reported> {
-        match entry.kind {
-            Kind::NotYet => {
-                let name = entry.name;
-                self.complaints.error_once(
-                    name,
-                    call.name,
-                    format!("`{name}` is not supported yet"),
-                    Some(
-                        "remove it, or write the part as a union or intersection of shapes"
-                            .to_owned(),
-                    ),
-                );
-                return Err(Reported);
-            }
-            Kind::Flat => return Ok(Step::Done(Operand::Flat(call.name))),
-            _ => {}
+        if let Kind::Refused(remedy) = entry.kind {
+            let name = entry.name;
+            self.complaints.error_once(
+                name,
+                call.name,
+                format!("`{name}` is not supported"),
+                Some(remedy.to_owned()),
+            );
+            return Err(Reported);
         }
         let complaints = &mut self.complaints;
         let arguments = Arguments::new(self.text, self.ast, call, entry, complaints);
@@ -213,14 +204,35 @@ impl Evaluator<'_, '_> {
                 Some(material) => Operation::Paint(self.builder.material(material)),
                 None => Operation::Union,
             }),
+            Kind::LinearExtrude | Kind::RotateExtrude => {
+                let sides = self.shapes.sides(&arguments);
+                let revolved = entry.kind == Kind::RotateExtrude;
+                let extrusion = figure::extrusion(revolved, sides, &arguments, complaints)?;
+                Step::Open(Operation::Extrude(extrusion))
+            }
+            Kind::Hull => Step::Open(Operation::Hull),
+            Kind::Figure(leaf) => {
+                let sides = self.shapes.sides(&arguments);
+                let region = figure::leaf(leaf, sides, &arguments, complaints)?;
+                if !is_leaf {
+                    childless(entry, call.name, complaints);
+                }
+                Step::Done(match region {
+                    Some(region) => {
+                        let id = self.figures.add(Figure::Region(region));
+                        Operand::Flat(id, call.name)
+                    }
+                    None => Operand::Nothing,
+                })
+            }
             Kind::Leaf(leaf) => {
                 let volume = self.shapes.read(leaf, &arguments, complaints)?;
                 if !is_leaf {
-                    let message = format!("`{}` has no children; they are ignored", entry.name);
-                    complaints.warn(call.name, message, None);
+                    childless(entry, call.name, complaints);
                 }
                 Step::Done(match volume {
                     Volume::Shape(shape) => Operand::Solid(self.builder.add(Node::Shape(shape))),
+                    Volume::Formula(parts) => Operand::Solid(self.formula(parts)),
                     Volume::Nothing => Operand::Nothing,
                     Volume::Everything => {
                         let nothing = self.builder.add(Node::Union(Vec::new()));
@@ -228,7 +240,7 @@ impl Evaluator<'_, '_> {
                     }
                 })
             }
-            Kind::Union | Kind::Flat | Kind::NotYet => Step::Open(Operation::Union),
+            Kind::Union | Kind::Refused(_) => Step::Open(Operation::Union),
         })
     }
 
@@ -238,66 +250,11 @@ impl Evaluator<'_, '_> {
         let message = format!("unknown node `{name}`");
         self.complaints.error_once(&name, at, message, remedy);
     }
+}
 
-    /// Combines the operands of a node whose children are all evaluated.
-    fn close(&mut self, frame: &Frame) -> Operand {
-        let operands = self
-            .operands
-            .split_off(frame.first.min(self.operands.len()));
-        if operands.iter().any(|o| matches!(o, Operand::Unusable)) {
-            return Operand::Unusable;
-        }
-        let first_dimension = operands.iter().find(|o| !matches!(o, Operand::Nothing));
-        if let Some(&Operand::Flat(at)) = first_dimension {
-            if operands.iter().any(|o| matches!(o, Operand::Solid(_))) {
-                let message = "2-D and 3-D nodes are mixed: after this 2-D one, the 3-D ones are left out, as in OpenSCAD";
-                self.complaints.warn(at, message, None);
-            }
-            return Operand::Flat(at);
-        }
-        let empty_first = matches!(operands.first(), None | Some(Operand::Nothing));
-        let any_empty = operands.iter().any(|o| matches!(o, Operand::Nothing));
-        let mut solids = Vec::with_capacity(operands.len());
-        for operand in operands {
-            match operand {
-                Operand::Solid(id) => solids.push(id),
-                Operand::Flat(at) => {
-                    let name = at.of(self.text);
-                    let message =
-                        format!("`{name}` is 2-D among 3-D nodes; it is left out, as in OpenSCAD");
-                    self.complaints.warn(at, message, None);
-                }
-                Operand::Nothing | Operand::Unusable => {}
-            }
-        }
-        let Some(&first) = solids.first() else {
-            return Operand::Nothing;
-        };
-        let is_alone = solids.len() == 1;
-        Operand::Solid(match &frame.operation {
-            Operation::Difference if empty_first => return Operand::Nothing,
-            Operation::Intersection if any_empty => return Operand::Nothing,
-            Operation::Union | Operation::Intersection | Operation::Difference if is_alone => first,
-            Operation::Intersection => self.builder.add(Node::Intersection(solids)),
-            Operation::Difference => self.builder.add(Node::Difference(solids)),
-            Operation::Union => self.builder.add(Node::Union(solids)),
-            Operation::Move(transform) => {
-                let all = self.union(solids);
-                self.builder.add(Node::Instance(transform.clone(), all))
-            }
-            Operation::Paint(material) => {
-                let all = self.union(solids);
-                self.builder.add(Node::Painted(*material, all))
-            }
-        })
-    }
-
-    fn union(&mut self, solids: Vec<NodeId>) -> NodeId {
-        match solids[..] {
-            [only] => only,
-            _ => self.builder.add(Node::Union(solids)),
-        }
-    }
+fn childless(entry: &Entry, at: Span, complaints: &mut Complaints<'_>) {
+    let message = format!("`{}` has no children; they are ignored", entry.name);
+    complaints.warn(at, message, None);
 }
 
 /// What a visited node asks for.

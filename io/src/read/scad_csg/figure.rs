@@ -12,10 +12,13 @@ mod revolve;
 mod solid;
 mod taper;
 
+pub(super) use chain::{doubled_area, turn};
+pub(super) use disc_hull::Unhullable;
 pub(super) use read::{Extrusion, FigureLeaf, extrusion, leaf};
-pub(super) use solid::extrude;
+pub(super) use solid::{Refusal, extrude};
 
 use glam::{DAffine2, DMat3, DVec2, DVec3};
+use std::convert::Infallible;
 
 /// Index of a figure in [`Figures`].
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
@@ -136,6 +139,13 @@ impl Rectangle {
             max: self.max.max(other.max),
         }
     }
+
+    fn intersection(&self, other: &Self) -> Self {
+        Self {
+            min: self.min.max(other.min),
+            max: self.max.min(other.max),
+        }
+    }
 }
 
 /// All figures of a file; children come before parents.
@@ -162,35 +172,107 @@ impl Figures {
         self.nodes.get(id.0)
     }
 
-    /// All regions of a figure with their places, and whether the figure is nothing but their
-    /// union.
-    fn regions(&self, root: FigureId) -> (Vec<(DAffine2, &Region)>, bool) {
-        let mut found = Vec::new();
-        let mut is_union = true;
-        let mut waiting = vec![(DAffine2::IDENTITY, root)];
-        while let Some((at, id)) = waiting.pop() {
-            match self.node(id) {
-                Some(Figure::Region(region)) => found.push((at, region)),
-                Some(Figure::Moved(by, child)) => waiting.push((at * *by, *child)),
-                Some(Figure::Union(all)) => waiting.extend(all.iter().map(|c| (at, *c))),
-                Some(Figure::Intersection(all)) => {
-                    is_union = false;
-                    waiting.extend(all.iter().map(|c| (at, *c)));
+    /// The value of a figure from those of its regions, which are given with their places.
+    fn fold<T, E>(
+        &self,
+        root: FigureId,
+        place: DAffine2,
+        mut region: impl FnMut(&Region, &DAffine2) -> Result<T, E>,
+        mut combine: impl FnMut(&Figure, Vec<T>) -> T,
+    ) -> Result<Option<T>, E> {
+        enum Task {
+            Enter(FigureId, DAffine2),
+            Combine(FigureId, usize),
+        }
+        let mut done: Vec<T> = Vec::new();
+        let mut tasks = vec![Task::Enter(root, place)];
+        while let Some(task) = tasks.pop() {
+            match task {
+                Task::Enter(id, at) => match self.node(id) {
+                    None => {}
+                    Some(Figure::Region(found)) => done.push(region(found, &at)?),
+                    Some(Figure::Moved(by, child)) => tasks.push(Task::Enter(*child, at * *by)),
+                    Some(
+                        Figure::Union(all) | Figure::Intersection(all) | Figure::Difference(all),
+                    ) => {
+                        tasks.push(Task::Combine(id, done.len()));
+                        tasks.extend(all.iter().rev().map(|child| Task::Enter(*child, at)));
+                    }
+                },
+                Task::Combine(id, first) => {
+                    let all = done.split_off(first.min(done.len()));
+                    if let Some(figure) = self.node(id) {
+                        done.push(combine(figure, all));
+                    }
                 }
-                Some(Figure::Difference(all)) => {
-                    is_union = is_union && all.len() < 2;
-                    waiting.extend(all.first().map(|c| (at, *c)));
-                }
-                None => {}
             }
         }
-        (found, is_union)
+        Ok(done.pop())
     }
 
     /// A box around a figure: tight for unions, never too small.
     fn bounds(&self, root: FigureId) -> Rectangle {
-        let (regions, _) = self.regions(root);
-        let boxes = regions.iter().map(|(at, region)| match &region.outline {
+        let bounds = self.fold(
+            root,
+            DAffine2::IDENTITY,
+            |region, at| Ok::<_, Infallible>(region.bounds(at)),
+            |figure, all| match figure {
+                Figure::Intersection(_) => {
+                    let mut all = all.into_iter();
+                    let first = all.next().unwrap_or(Rectangle::EMPTY);
+                    all.fold(first, |sum, one| sum.intersection(&one))
+                }
+                Figure::Difference(_) => all.first().copied().unwrap_or(Rectangle::EMPTY),
+                _ => all.iter().fold(Rectangle::EMPTY, |sum, one| sum.union(one)),
+            },
+        );
+        bounds.unwrap_or_default().unwrap_or(Rectangle::EMPTY)
+    }
+
+    /// Whether a point lies in a figure.
+    fn contains(&self, root: FigureId, point: DVec2) -> bool {
+        let inside = self.fold(
+            root,
+            DAffine2::IDENTITY,
+            |region, at| {
+                let local = at.inverse().transform_point2(point);
+                Ok::<_, Infallible>(region.contains(local))
+            },
+            |figure, all| match figure {
+                Figure::Intersection(_) => all.iter().all(|inside| *inside),
+                Figure::Difference(_) => match all.split_first() {
+                    Some((first, rest)) => *first && !rest.contains(&true),
+                    None => false,
+                },
+                _ => all.contains(&true),
+            },
+        );
+        matches!(inside, Ok(Some(true)))
+    }
+
+    /// The regions with their places if the figure is nothing but their union.
+    fn united_regions(&self, root: FigureId) -> Option<Vec<(DAffine2, &Region)>> {
+        let mut found = Vec::new();
+        let mut waiting = vec![(DAffine2::IDENTITY, root)];
+        while let Some((at, id)) = waiting.pop() {
+            match self.node(id)? {
+                Figure::Region(region) => found.push((at, region)),
+                Figure::Moved(by, child) => waiting.push((at * *by, *child)),
+                Figure::Union(all) => waiting.extend(all.iter().map(|c| (at, *c))),
+                Figure::Intersection(all) | Figure::Difference(all) => match all[..] {
+                    [only] => waiting.push((at, only)),
+                    _ => return None,
+                },
+            }
+        }
+        Some(found)
+    }
+}
+
+impl Region {
+    /// The box around the region, moved.
+    fn bounds(&self, at: &DAffine2) -> Rectangle {
+        match &self.outline {
             Outline::Circle(radius) => {
                 let rows = at.matrix2.transpose();
                 let reach = DVec2::new(rows.x_axis.length(), rows.y_axis.length()) * *radius;
@@ -205,7 +287,24 @@ impl Figures {
                     all.union(&Rectangle { min: p, max: p })
                 })
             }
-        });
-        boxes.fold(Rectangle::EMPTY, |all, one| all.union(&one))
+        }
+    }
+
+    fn contains(&self, point: DVec2) -> bool {
+        let mut open = vec![(true, false)];
+        for part in &self.parts {
+            let value = match part {
+                Part::Open { union } => {
+                    open.push((*union, !*union));
+                    continue;
+                }
+                Part::Side(curve) => curve.value(point) <= 0.0,
+                Part::Close => open.pop().is_some_and(|(_, value)| value),
+            };
+            if let Some((union, all)) = open.last_mut() {
+                *all = if *union { *all || value } else { *all && value };
+            }
+        }
+        open.pop().is_some_and(|(_, value)| value)
     }
 }

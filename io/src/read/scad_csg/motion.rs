@@ -120,7 +120,7 @@ fn turn(axis: DVec3, degrees: f64) -> DMat3 {
 }
 
 /// Sine and cosine, exact at multiples of 90°.
-fn sin_cos_degrees(degrees: f64) -> (f64, f64) {
+pub(super) fn sin_cos_degrees(degrees: f64) -> (f64, f64) {
     let turn = degrees.rem_euclid(360.0);
     let quarter = (turn / 90.0).round();
     let (sine, cosine) = (turn - 90.0 * quarter).to_radians().sin_cos();

@@ -1,5 +1,7 @@
 //! The nodes that may stand in a file, and what becomes of each.
 
+use super::figure::FigureLeaf;
+
 /// What a node means to this reader.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub(super) enum Kind {
@@ -15,10 +17,16 @@ pub(super) enum Kind {
     Color,
     /// A shape without children.
     Leaf(Leaf),
-    /// A plane figure: part of no solid unless something extrudes it.
-    Flat,
-    /// A node of OpenSCAD's that this reader has no exact solid for.
-    NotYet,
+    /// A plane figure without children: part of no solid unless something extrudes it.
+    Figure(FigureLeaf),
+    /// The solid that its children, plane figures, make when they move along z.
+    LinearExtrude,
+    /// The solid that its children, plane figures, make when they turn about z.
+    RotateExtrude,
+    /// The convex hull of its children.
+    Hull,
+    /// A node of OpenSCAD's that this reader refuses, and what to do instead.
+    Refused(&'static str),
 }
 
 /// How children are moved.
@@ -83,8 +91,25 @@ const fn motion(name: &'static str, motion: Motion, parameters: &'static [&'stat
     entry(name, Kind::Motion(motion), parameters)
 }
 
+const fn figure(
+    name: &'static str,
+    figure: FigureLeaf,
+    parameters: &'static [&'static str],
+) -> Entry {
+    entry(name, Kind::Figure(figure), parameters)
+}
+
+const fn refused(name: &'static str, remedy: &'static str) -> Entry {
+    entry(name, Kind::Refused(remedy), &[])
+}
+
+const FONT: &str = "convert the text to polygons first, for instance by exporting it as SVG";
+const OUTLINE: &str = "write the resulting outline as polygons and circles";
+const MESH: &str = "write the part as unions, intersections and differences of shapes";
+const FILE: &str = "only what is written in the dump itself is read: write the shape in place";
+
 /// All nodes: OpenSCAD's, then this project's additions.
-const ENTRIES: [Entry; 40] = [
+const ENTRIES: [Entry; 42] = [
     entry("union", Kind::Union, &[]),
     entry("group", Kind::Union, &[]),
     entry("render", Kind::Union, &[]),
@@ -103,31 +128,46 @@ const ENTRIES: [Entry; 40] = [
         Leaf::Cylinder,
         &["h", "r1", "r2", "center", "r", "d", "d1", "d2"],
     ),
-    entry("square", Kind::Flat, &[]),
-    entry("circle", Kind::Flat, &[]),
-    entry("polygon", Kind::Flat, &[]),
-    entry("text", Kind::Flat, &[]),
-    entry("offset", Kind::Flat, &[]),
-    entry("projection", Kind::Flat, &[]),
-    entry("fill", Kind::Flat, &[]),
+    figure("square", FigureLeaf::Square, &["size", "center"]),
+    figure("circle", FigureLeaf::Circle, &["r", "d"]),
+    figure("polygon", FigureLeaf::Polygon, &["points", "paths"]),
+    entry(
+        "linear_extrude",
+        Kind::LinearExtrude,
+        &[
+            "height", "v", "center", "scale", "twist", "slices", "file", "layer",
+        ],
+    ),
+    entry(
+        "rotate_extrude",
+        Kind::RotateExtrude,
+        &["angle", "start", "file", "layer"],
+    ),
+    entry("hull", Kind::Hull, &[]),
     leaf(
         "polyhedron",
         Leaf::Polyhedron,
         &["points", "faces", "triangles"],
     ),
-    entry("linear_extrude", Kind::NotYet, &[]),
-    entry("rotate_extrude", Kind::NotYet, &[]),
-    entry("hull", Kind::NotYet, &[]),
-    entry("minkowski", Kind::NotYet, &[]),
-    entry("resize", Kind::NotYet, &[]),
-    entry("import", Kind::NotYet, &[]),
-    entry("surface", Kind::NotYet, &[]),
-    entry("roof", Kind::NotYet, &[]),
-    entry("glide", Kind::NotYet, &[]),
-    entry("subdiv", Kind::NotYet, &[]),
-    entry("dxf_linear_extrude", Kind::NotYet, &[]),
-    entry("dxf_rotate_extrude", Kind::NotYet, &[]),
-    entry("import_stl", Kind::NotYet, &[]),
+    refused("text", FONT),
+    refused("offset", OUTLINE),
+    refused("projection", OUTLINE),
+    refused("fill", OUTLINE),
+    refused("minkowski", MESH),
+    refused(
+        "resize",
+        "write the factors with scale(), which needs no measuring",
+    ),
+    refused("import", FILE),
+    refused("import_stl", FILE),
+    refused("import_off", FILE),
+    refused("import_dxf", FILE),
+    refused("surface", FILE),
+    refused("roof", MESH),
+    refused("glide", MESH),
+    refused("subdiv", MESH),
+    refused("dxf_linear_extrude", FILE),
+    refused("dxf_rotate_extrude", FILE),
     leaf("torus", Leaf::Torus, &["r1", "r2"]),
     leaf("halfspace", Leaf::HalfSpace, &["n", "d"]),
     leaf("quadric", Leaf::Quadric, &["m"]),
@@ -166,6 +206,24 @@ pub(super) fn nearest(
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    /// The first column of the table in the documentation, split at its commas.
+    fn documented() -> Vec<&'static str> {
+        let text = include_str!("../../../../docs/openscad.md");
+        let rows = text.lines().filter(|line| line.starts_with("| `"));
+        let cells = rows.filter_map(|row| row.split('|').nth(1));
+        let names = cells.flat_map(|cell| cell.split('`').skip(1).step_by(2));
+        names.collect()
+    }
+
+    #[test]
+    fn the_documentation_lists_every_node_once_and_no_other() {
+        let mut documented = documented();
+        documented.sort_unstable();
+        let mut known: Vec<&str> = ENTRIES.iter().map(|entry| entry.name).collect();
+        known.sort_unstable();
+        assert_eq!(documented, known);
+    }
 
     #[test]
     fn names_are_unique() {

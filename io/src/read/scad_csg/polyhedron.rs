@@ -1,16 +1,39 @@
-//! `polyhedron(points, faces)`, as far as it is convex.
+//! `polyhedron(points, faces)`: an intersection of half-spaces if it is convex, else a Boolean
+//! formula of them.
+
+mod faces;
+mod partition;
 
 use super::arguments::Arguments;
 use super::complaints::{Complaints, Reported};
 use super::shapes::{Volume, finish};
+use super::token::Span;
 use csg::{Error, Shape};
+use faces::{Faces, Unsound};
 use glam::DVec3;
+use partition::Piece;
 
-/// Convex bodies with more faces are meshes of curved ones; each face would be a half-space, and
-/// finding the coplanar ones takes quadratic time.
-const MAX_FACES: usize = 2000;
+/// More faces are not tried as a convex body, which takes quadratic time.
+const MAX_CONVEX: usize = 2000;
 
-/// Reads a convex polyhedron; others are refused, saying why.
+/// Polyhedra with more faces are meshes of curved bodies.
+const MAX_FACES: usize = 20_000;
+
+/// Distance of the box around a formula from the polyhedron, in sizes of it.
+const MARGIN: f64 = 0.05;
+
+/// A part of a formula of half-spaces in prefix order.
+#[derive(Clone, PartialEq, Debug)]
+pub(super) enum Part {
+    /// An operator begins.
+    Open { union: bool },
+    /// The innermost operator ends.
+    Close,
+    /// The points in a shape, or those outside it.
+    Shape { shape: Shape, inside: bool },
+}
+
+/// Reads a polyhedron; unsound ones are refused, saying why.
 pub(super) fn read(
     arguments: &Arguments<'_>,
     complaints: &mut Complaints<'_>,
@@ -35,8 +58,10 @@ pub(super) fn read(
     let at = arguments.name;
     if faces.value.len() > MAX_FACES {
         let found = faces.value.len();
-        let message = format!("a polyhedron of {found} faces is not supported yet");
-        let remedy = format!("convex ones of up to {MAX_FACES} faces are");
+        let message = format!("a polyhedron of {found} faces is too large");
+        let remedy = format!(
+            "polyhedra of up to {MAX_FACES} faces are read; start from the model that this mesh was made of"
+        );
         return Err(complaints.error(at, message, remedy));
     }
     let vertices: Vec<DVec3> = points.value.iter().map(|p| DVec3::from_slice(p)).collect();
@@ -56,16 +81,111 @@ pub(super) fn read(
     let size = vertices
         .iter()
         .fold(0.0, |size, v| v.abs().max_element().max(size));
-    match Shape::convex_polyhedron(&vertices, &corners) {
-        Err(Error::NotConvex { face, vertex }) => Err(complaints.error(
-            at,
-            format!(
-                "a polyhedron that is not convex is not supported yet: vertex {vertex} lies beyond face {face}"
-            ),
-            "write it as a union of convex ones".to_owned(),
-        )),
-        shape => finish(shape, size, at, complaints),
+    if corners.len() <= MAX_CONVEX {
+        match Shape::convex_polyhedron(&vertices, &corners) {
+            // One that is open, dented or too flat to tell is looked at again.
+            Err(Error::NotConvex { .. } | Error::OpenPolyhedron | Error::FlatFace { .. }) => {}
+            shape => return finish(shape, size, at, complaints),
+        }
     }
+    if size > super::shapes::MAX_SIZE {
+        return finish(Shape::sphere(1.0), size, at, complaints);
+    }
+    let mut polygons = Vec::with_capacity(corners.len());
+    for face in &corners {
+        let positions: Option<Vec<DVec3>> =
+            face.iter().map(|v| vertices.get(*v).copied()).collect();
+        let Some(polygon) = positions else {
+            let message = format!(
+                "a face names a vertex beyond the last, {}",
+                vertices.len() - 1
+            );
+            return Err(complaints.error(faces.at, message, None));
+        };
+        polygons.push(polygon);
+    }
+    match dented(polygons) {
+        Ok(parts) => Ok(Volume::Formula(parts)),
+        Err(Fault::Numbers(error)) => Err(complaints.error(at, error.to_string(), None)),
+        Err(Fault::Unsound(why)) => Err(refuse(&why, at, complaints)),
+    }
+}
+
+/// Why a polyhedron has no formula.
+enum Fault {
+    Unsound(Unsound),
+    Numbers(Error),
+}
+
+impl From<Unsound> for Fault {
+    fn from(why: Unsound) -> Self {
+        Self::Unsound(why)
+    }
+}
+
+impl From<Error> for Fault {
+    fn from(error: Error) -> Self {
+        Self::Numbers(error)
+    }
+}
+
+/// The formula of a polyhedron that is not convex.
+fn dented(polygons: Vec<Vec<DVec3>>) -> Result<Vec<Part>, Fault> {
+    let faces = Faces::new(polygons)?;
+    let pieces = partition::formula(&faces)?;
+    if !partition::is_bounded_by(&pieces, &faces) {
+        return Err(Unsound::Crossing.into());
+    }
+    let margin = DVec3::splat(MARGIN * faces.size);
+    let around = Shape::block(faces.min - margin, faces.max + margin)?;
+    let mut parts = vec![
+        Part::Open { union: false },
+        Part::Shape {
+            shape: around,
+            inside: true,
+        },
+    ];
+    for piece in pieces {
+        parts.push(match piece {
+            Piece::Open { union } => Part::Open { union },
+            Piece::Close => Part::Close,
+            Piece::Side { plane, inside } => {
+                let Some(plane) = faces.planes.get(plane) else {
+                    continue;
+                };
+                Part::Shape {
+                    shape: Shape::half_space(plane.normal, plane.offset)?,
+                    inside,
+                }
+            }
+        });
+    }
+    parts.push(Part::Close);
+    Ok(parts)
+}
+
+fn refuse(why: &Unsound, at: Span, complaints: &mut Complaints<'_>) -> Reported {
+    let (message, remedy) = match why {
+        Unsound::Edge(a, b) => (
+            format!(
+                "the polyhedron is open, or its faces turn different ways: the edge from {a} to {b} does not join two faces"
+            ),
+            "list the vertices of all faces clockwise as seen from outside, and close all holes",
+        ),
+        Unsound::Flat => (
+            "the polyhedron encloses no volume".to_owned(),
+            "remove it, or move its vertices out of the common plane",
+        ),
+        Unsound::Crossing => (
+            "faces of the polyhedron cross or cover each other".to_owned(),
+            "write it as a union of polyhedra that do not",
+        ),
+        Unsound::Large => (
+            "the polyhedron is too intricate".to_owned(),
+            "write it as a union of simpler ones",
+        ),
+    };
+    complaints.error(at, message, remedy.to_owned())
 }
 
 /// A whole number that can be an index.

@@ -14,6 +14,8 @@ use std::f64::consts::PI;
 pub(super) enum Volume {
     /// A shape.
     Shape(Shape),
+    /// A formula of shapes.
+    Formula(Vec<polyhedron::Part>),
     /// No point at all; a warning was given.
     Nothing,
     /// All of space; a warning was given.
@@ -24,7 +26,7 @@ pub(super) enum Volume {
 const MAX_COEFFICIENTS: usize = 50_000_000;
 
 /// Larger numbers make squares and fourth powers overflow further on.
-const MAX_SIZE: f64 = 1e50;
+pub(super) const MAX_SIZE: f64 = 1e50;
 
 /// Reads shapes within the limits that hold for a whole file.
 pub(super) struct ShapeReader {
@@ -66,7 +68,7 @@ impl ShapeReader {
     }
 
     /// Number of sides that the author asked for, unless that many only mean "round".
-    fn sides(&self, arguments: &Arguments<'_>) -> Option<u32> {
+    pub(super) fn sides(&self, arguments: &Arguments<'_>) -> Option<u32> {
         let fragments = arguments.fragments();
         if !(fragments > 0.0 && fragments <= f64::from(self.facet_limit)) {
             return None;
@@ -163,7 +165,7 @@ impl ShapeReader {
 }
 
 /// The radius, or half the diameter if that is given instead.
-fn radius(
+pub(super) fn radius(
     arguments: &Arguments<'_>,
     radius: &str,
     diameter: &str,

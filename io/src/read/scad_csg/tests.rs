@@ -4,6 +4,7 @@ use csg::{Material, Model, Node, NodeId, Shape};
 use glam::DVec3;
 use proptest::prelude::*;
 
+mod figures;
 mod messages;
 mod random;
 mod semantics;

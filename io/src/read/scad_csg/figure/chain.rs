@@ -11,13 +11,13 @@ use glam::DVec2;
 use robust::{Coord, orient2d};
 
 /// The sign of the area of a triangle, exactly: positive if it is counter-clockwise.
-pub(super) fn turn(a: DVec2, b: DVec2, c: DVec2) -> f64 {
+pub(in super::super) fn turn(a: DVec2, b: DVec2, c: DVec2) -> f64 {
     let coord = |p: DVec2| Coord { x: p.x, y: p.y };
     orient2d(coord(a), coord(b), coord(c))
 }
 
 /// Twice the area that a closed chain encloses; positive if it is counter-clockwise.
-pub(super) fn doubled_area(loop_: &[DVec2]) -> f64 {
+pub(in super::super) fn doubled_area(loop_: &[DVec2]) -> f64 {
     let Some(&origin) = loop_.first() else {
         return 0.0;
     };
@@ -37,7 +37,7 @@ pub(super) fn hull(points: &[DVec2]) -> Vec<usize> {
         a.x.total_cmp(&b.x).then(a.y.total_cmp(&b.y))
     });
     order.dedup_by(|a, b| at(*a) == at(*b));
-    let mut half = |indices: &mut dyn Iterator<Item = usize>| {
+    let half = |indices: &mut dyn Iterator<Item = usize>| {
         let mut chain: Vec<usize> = Vec::new();
         for i in indices {
             while let [.., a, b] = chain[..]
@@ -58,19 +58,22 @@ pub(super) fn hull(points: &[DVec2]) -> Vec<usize> {
     all
 }
 
+/// What is still to be written.
+enum Task {
+    /// The chain of the vertices from `first` to `last`.
+    Chain {
+        first: usize,
+        last: usize,
+        union: bool,
+    },
+    /// The end of an operator.
+    Close,
+}
+
 /// Appends the formula of a simple, counter-clockwise polygon; returns whether it is convex.
 pub(super) fn formula(polygon: &[DVec2], parts: &mut Vec<Part>) -> bool {
     let n = polygon.len();
     let at = |i: usize| polygon.get(i % n.max(1)).copied().unwrap_or_default();
-    // Ranges of vertices whose chains are still to be written, and the closing of operators.
-    enum Task {
-        Chain {
-            first: usize,
-            last: usize,
-            union: bool,
-        },
-        Close,
-    }
     let ring = hull(polygon);
     let Some(&start) = ring.iter().min() else {
         return false;

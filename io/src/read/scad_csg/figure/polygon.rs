@@ -35,28 +35,45 @@ impl Region {
         let mut corners = Vec::new();
         let mut convex = shapes.len() == 1;
         for shape in &shapes {
-            parts.push(Part::Open { union: false });
+            // A contour that touches itself is several loops; filled ones turn counter-clockwise.
+            let (mut filled, mut holes, mut islands) = (Vec::new(), Vec::new(), Vec::new());
             for (at, contour) in shape.iter().enumerate() {
-                let is_outer = at == 0;
-                let resolved = contour.iter().map(|&[x, y]| known.nearest(DVec2::new(x, y)));
+                let resolved = contour
+                    .iter()
+                    .map(|&[x, y]| known.nearest(DVec2::new(x, y)));
                 for mut simple in split_at_touching(resolved) {
                     drop_collinear(&mut simple);
                     if simple.len() < 3 {
                         continue;
                     }
-                    if doubled_area(&simple) < 0.0 {
+                    let list = if doubled_area(&simple) < 0.0 {
                         simple.reverse();
-                    }
-                    let start = parts.len();
-                    convex &= formula(&simple, &mut parts) && is_outer;
-                    if is_outer {
-                        corners.extend(simple);
+                        &mut holes
+                    } else if at == 0 {
+                        &mut filled
                     } else {
-                        complement(parts.get_mut(start..).unwrap_or_default());
-                    }
+                        &mut islands
+                    };
+                    list.push(simple);
                 }
             }
+            convex &= filled.len() == 1 && holes.is_empty() && islands.is_empty();
+            parts.push(Part::Open { union: false });
+            parts.push(Part::Open { union: true });
+            for outline in &filled {
+                convex &= formula(outline, &mut parts);
+            }
             parts.push(Part::Close);
+            for hole in &holes {
+                let start = parts.len();
+                formula(hole, &mut parts);
+                complement(parts.get_mut(start..).unwrap_or_default());
+            }
+            parts.push(Part::Close);
+            for island in &islands {
+                formula(island, &mut parts);
+            }
+            corners.extend(filled.into_iter().chain(islands).flatten());
         }
         parts.push(Part::Close);
         (!corners.is_empty()).then_some(Self {
@@ -79,7 +96,9 @@ impl Known {
     fn new(points: &[DVec2]) -> Self {
         let mut sorted = points.to_vec();
         sorted.sort_by(|a, b| a.x.total_cmp(&b.x));
-        let size = points.iter().fold(0.0_f64, |m, p| m.max(p.abs().max_element()));
+        let size = points
+            .iter()
+            .fold(0.0_f64, |m, p| m.max(p.abs().max_element()));
         Self {
             sorted,
             near: SAME * size,

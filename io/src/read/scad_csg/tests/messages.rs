@@ -17,16 +17,20 @@ fn unknown_and_unsupported_nodes_are_named() {
         ),
         ("wheel_hub(3);", "t.csg:1:1: unknown node `wheel_hub`"),
         (
-            "cube(1);\nhull() { cube(1); }",
-            "t.csg:2:1: `hull` is not supported yet (remove it, or write the part as a union or intersection of shapes)",
+            "cube(1);\nroof() { square(1); }",
+            "t.csg:2:1: `roof` is not supported (write the part as unions, intersections and differences of shapes)",
         ),
         (
-            "linear_extrude(height = 1) { square([1, 1]); } linear_extrude();",
-            "t.csg:1:1: `linear_extrude` is not supported yet, here and once more (remove it, or write the part as a union or intersection of shapes)",
+            "surface(file = \"a.dat\"); surface(file = \"b.dat\");",
+            "t.csg:1:1: `surface` is not supported, here and once more (only what is written in the dump itself is read: write the shape in place)",
         ),
         (
             "text(\"a\");",
-            "t.csg:1:1: the model is 2-D only: `text` has no volume (only 3-D models can be converted; linear_extrude and rotate_extrude are not supported yet)",
+            "t.csg:1:1: `text` is not supported (convert the text to polygons first, for instance by exporting it as SVG)",
+        ),
+        (
+            "circle(r = 1);",
+            "t.csg:1:1: the model is 2-D only: `circle` has no volume (make a solid of it with linear_extrude or rotate_extrude)",
         ),
     ] {
         assert_eq!(only_error(text), expected);
@@ -42,7 +46,7 @@ fn several_errors_are_told_at_once() {
         [
             "t.csg:2:14: `size` must be a list of 3 numbers, found `\"a\"`",
             "t.csg:3:2: unknown node `cubee` (did you mean `cube`?)",
-            "t.csg:4:2: `minkowski` is not supported yet (remove it, or write the part as a union or intersection of shapes)",
+            "t.csg:4:2: `minkowski` is not supported (write the part as unions, intersections and differences of shapes)",
             "t.csg:5:13: `r` must be a number, found `[1]`",
         ]
     );
@@ -265,14 +269,7 @@ fn matrices_and_sizes_out_of_range_are_refused() {
 }
 
 #[test]
-fn polyhedra_that_are_not_convex_are_refused() {
-    // A pyramid whose base is pushed in.
-    let dented = "polyhedron(points = [[1,1,0],[-1,1,0],[-1,-1,0],[1,-1,0],[0,0,3],[0,0,1]], faces = \
-                  [[0,1,4],[1,2,4],[2,3,4],[3,0,4],[1,0,5],[2,1,5],[3,2,5],[0,3,5]]);";
-    assert!(
-        only_error(dented)
-            .starts_with("t.csg:1:1: a polyhedron that is not convex is not supported yet")
-    );
+fn polyhedra_that_name_no_vertices_are_refused() {
     assert!(
         only_error("polyhedron(points = [[0,0,0]], faces = [[0,1.5,2]]);")
             .contains("must list indices")

@@ -279,8 +279,8 @@ fn plane_figures_among_solids_are_left_out() {
     assert_eq!(
         flat,
         [
-            "t.csg:1:11: the model is 2-D only: `square` has no volume (only 3-D models can be \
-          converted; linear_extrude and rotate_extrude are not supported yet)"
+            "t.csg:1:11: the model is 2-D only: `square` has no volume (make a solid of it with \
+          linear_extrude or rotate_extrude)"
         ]
     );
 }

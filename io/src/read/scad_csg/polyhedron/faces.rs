@@ -1,0 +1,269 @@
+//! Faces of a closed polyhedron as oriented triangles in common planes.
+
+use super::super::figure::{doubled_area, turn};
+use glam::{DVec2, DVec3};
+use std::collections::BTreeMap;
+
+/// How far a vertex may lie from a plane to count as lying in it, in sizes of the polyhedron:
+/// OpenSCAD writes coordinates with six digits.
+const FLATNESS: f64 = 2e-6;
+
+/// Cosine of the largest angle between the normals of faces that are taken for coplanar.
+const PARALLEL: f64 = 0.999_999;
+
+/// Why faces are not those of a polyhedron.
+#[derive(Clone, PartialEq, Debug)]
+pub(super) enum Unsound {
+    /// An edge, given by its ends, does not join two faces that turn the same way.
+    Edge(DVec3, DVec3),
+    /// The faces enclose no volume.
+    Flat,
+    /// A face crosses itself or others.
+    Crossing,
+    /// There are too many faces, or too many pieces of them.
+    Large,
+}
+
+/// A triangle, counter-clockwise from outside.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Triangle {
+    pub(super) corners: [DVec3; 3],
+    /// Index of its plane.
+    pub(super) plane: usize,
+    /// Whether its outward normal is the plane's.
+    pub(super) along: bool,
+}
+
+/// `normal · x = offset`, `normal` a unit vector.
+#[derive(Clone, Copy, PartialEq, Debug)]
+pub(super) struct Plane {
+    pub(super) normal: DVec3,
+    pub(super) offset: f64,
+}
+
+/// Triangles, and the planes that they lie in.
+#[derive(Debug)]
+pub(super) struct Faces {
+    pub(super) triangles: Vec<Triangle>,
+    pub(super) planes: Vec<Plane>,
+    /// Size of the polyhedron.
+    pub(super) size: f64,
+    pub(super) min: DVec3,
+    pub(super) max: DVec3,
+}
+
+impl Faces {
+    /// Takes faces as lists of positions in one sense of rotation, whichever.
+    pub(super) fn new(mut polygons: Vec<Vec<DVec3>>) -> Result<Self, Unsound> {
+        for polygon in &mut polygons {
+            // Adding 0 turns −0 into 0.
+            for p in polygon.iter_mut() {
+                *p += DVec3::ZERO;
+            }
+            polygon.dedup();
+            while polygon.len() > 1 && polygon.first() == polygon.last() {
+                polygon.pop();
+            }
+        }
+        polygons.retain(|polygon| polygon.len() > 2);
+        check_edges(&polygons)?;
+        let all = || polygons.iter().flatten();
+        let min = all().fold(DVec3::INFINITY, |m, p| m.min(*p));
+        let max = all().fold(DVec3::NEG_INFINITY, |m, p| m.max(*p));
+        let size = min.distance(max);
+        let volume: f64 = polygons.iter().map(|p| volume_below(p, min)).sum();
+        if volume.abs() <= 1e-12 * size.powi(3) || !volume.is_finite() {
+            return Err(Unsound::Flat);
+        }
+        if volume < 0.0 {
+            for polygon in &mut polygons {
+                polygon.reverse();
+            }
+        }
+        let mut faces = Self {
+            triangles: Vec::new(),
+            planes: Vec::new(),
+            size,
+            min,
+            max,
+        };
+        // The largest of coplanar faces knows its plane best.
+        polygons.sort_by(|a, b| {
+            let (a, b) = (vector_area(a), vector_area(b));
+            b.length_squared().total_cmp(&a.length_squared())
+        });
+        let mut buckets = BTreeMap::new();
+        for polygon in polygons {
+            faces.add(&polygon, &mut buckets)?;
+        }
+        Ok(faces)
+    }
+
+    fn add(
+        &mut self,
+        polygon: &[DVec3],
+        buckets: &mut BTreeMap<i64, Vec<usize>>,
+    ) -> Result<(), Unsound> {
+        let flat = FLATNESS * self.size;
+        let Some(normal) = vector_area(polygon).try_normalize() else {
+            return Ok(());
+        };
+        let offset = normal.dot(polygon.iter().sum::<DVec3>() / polygon.len() as f64);
+        let is_flat = |plane: &Plane| {
+            let mut away = polygon.iter().map(|p| plane.normal.dot(*p) - plane.offset);
+            away.all(|d| d.abs() <= flat)
+        };
+        let triangles = triangulate(polygon, normal).ok_or(Unsound::Crossing)?;
+        let own = Plane { normal, offset };
+        if !is_flat(&own) {
+            // OpenSCAD, too, splits faces that are not plane, along whichever diagonals.
+            for triangle in triangles {
+                let plane = plane_of(&triangle);
+                if let Some(plane) = plane {
+                    self.push(triangle, plane, buckets);
+                }
+            }
+            return Ok(());
+        }
+        for triangle in triangles {
+            self.push(triangle, own, buckets);
+        }
+        Ok(())
+    }
+
+    /// Adds a triangle in a known plane, or in this one.
+    fn push(&mut self, corners: [DVec3; 3], own: Plane, buckets: &mut BTreeMap<i64, Vec<usize>>) {
+        let flat = FLATNESS * self.size;
+        // Distances of coplanar planes from the middle differ little.
+        let middle = 0.5 * (self.min + self.max);
+        let reach = own.normal.dot(middle) - own.offset;
+        let width = self.size * 1e-3;
+        #[expect(
+            clippy::cast_possible_truncation,
+            reason = "at most the size over a thousandth of it"
+        )]
+        let bucket = (reach.abs() / width) as i64;
+        let near = (bucket - 1..=bucket + 1)
+            .filter_map(|b| buckets.get(&b))
+            .flatten();
+        let known = near.copied().find_map(|at| {
+            let plane = self.planes.get(at)?;
+            let cosine = plane.normal.dot(own.normal);
+            let same = cosine.abs() > PARALLEL
+                && corners
+                    .iter()
+                    .all(|p| (plane.normal.dot(*p) - plane.offset).abs() <= flat);
+            same.then_some((at, cosine > 0.0))
+        });
+        let (plane, along) = known.unwrap_or_else(|| {
+            self.planes.push(own);
+            buckets
+                .entry(bucket)
+                .or_default()
+                .push(self.planes.len() - 1);
+            (self.planes.len() - 1, true)
+        });
+        self.triangles.push(Triangle {
+            corners,
+            plane,
+            along,
+        });
+    }
+}
+
+/// Every edge must be passed as often one way as the other.
+fn check_edges(polygons: &[Vec<DVec3>]) -> Result<(), Unsound> {
+    let key = |p: DVec3| p.to_array().map(f64::to_bits);
+    let mut balance: BTreeMap<[[u64; 3]; 2], (i64, DVec3, DVec3)> = BTreeMap::new();
+    for polygon in polygons {
+        let next = polygon.iter().cycle().skip(1);
+        for (&a, &b) in polygon.iter().zip(next) {
+            let (low, high, way) = if key(a) < key(b) {
+                (a, b, 1)
+            } else {
+                (b, a, -1)
+            };
+            balance
+                .entry([key(low), key(high)])
+                .or_insert((0, low, high))
+                .0 += way;
+        }
+    }
+    match balance.values().find(|(count, ..)| *count != 0) {
+        Some(&(_, a, b)) => Err(Unsound::Edge(a, b)),
+        None => Ok(()),
+    }
+}
+
+/// Six times the volume between a polygon and a point.
+fn volume_below(polygon: &[DVec3], apex: DVec3) -> f64 {
+    let Some((&first, rest)) = polygon.split_first() else {
+        return 0.0;
+    };
+    let fans = rest.windows(2).map(|w| match *w {
+        [a, b] => (first - apex).dot((a - apex).cross(b - apex)),
+        _ => 0.0,
+    });
+    fans.sum()
+}
+
+/// Twice the vector area of a polygon, whose direction is the normal that fits it best.
+fn vector_area(polygon: &[DVec3]) -> DVec3 {
+    let Some((&first, rest)) = polygon.split_first() else {
+        return DVec3::ZERO;
+    };
+    let fans = rest.windows(2).map(|w| match *w {
+        [a, b] => (a - first).cross(b - first),
+        _ => DVec3::ZERO,
+    });
+    fans.sum()
+}
+
+fn plane_of(&[a, b, c]: &[DVec3; 3]) -> Option<Plane> {
+    let normal = (b - a).cross(c - a).try_normalize()?;
+    let offset = normal.dot((a + b + c) / 3.0);
+    Some(Plane { normal, offset })
+}
+
+/// Cuts ears off a simple polygon; `None` if it crosses itself.
+fn triangulate(polygon: &[DVec3], normal: DVec3) -> Option<Vec<[DVec3; 3]>> {
+    let (x, y) = normal.any_orthonormal_pair();
+    let (x, y) = if x.cross(y).dot(normal) > 0.0 {
+        (x, y)
+    } else {
+        (y, x)
+    };
+    let mut left: Vec<(DVec2, DVec3)> = polygon
+        .iter()
+        .map(|&p| (DVec2::new(x.dot(p), y.dot(p)), p))
+        .collect();
+    let outline: Vec<DVec2> = left.iter().map(|l| l.0).collect();
+    let mut triangles = Vec::with_capacity(left.len());
+    let mut covered = 0.0;
+    while left.len() > 3 {
+        let n = left.len();
+        let at = |i: usize| left.get(i % n).copied().unwrap_or_default();
+        let ear = (0..n).find(|&i| {
+            let (a, b, c) = (at(i + n - 1).0, at(i).0, at(i + 1).0);
+            let blocks = |p: DVec2| {
+                p != a
+                    && p != b
+                    && p != c
+                    && turn(a, b, p) >= 0.0
+                    && turn(b, c, p) >= 0.0
+                    && turn(c, a, p) >= 0.0
+            };
+            turn(a, b, c) >= 0.0 && !left.iter().any(|&(p, _)| blocks(p))
+        })?;
+        let corners = [at(ear + n - 1), at(ear), at(ear + 1)];
+        covered += doubled_area(&corners.map(|c| c.0));
+        triangles.push(corners.map(|c| c.1));
+        left.remove(ear);
+    }
+    if let [a, b, c] = left[..] {
+        covered += doubled_area(&[a.0, b.0, c.0]);
+        triangles.push([a.1, b.1, c.1]);
+    }
+    let area = doubled_area(&outline);
+    ((covered - area).abs() <= 1e-6 * area.abs()).then_some(triangles)
+}

@@ -1,0 +1,223 @@
+//! OpenSCAD's extrusions, polyhedra and hulls: real dumps against other programs' values, and
+//! volumes that have a formula.
+
+mod stages;
+
+use serde_json::Value;
+use stages::{Converted, convert, convert_model};
+use std::f64::consts::PI;
+use std::fs;
+use subdiv::Rule;
+
+const FOLDER: &str = concat!(
+    env!("CARGO_MANIFEST_DIR"),
+    "/fixtures/third_party/openscad_more"
+);
+
+/// Meshes of the reference fell into slivers where surfaces touch; their bodies are not counted.
+const SLIVERS: [&str; 1] = ["nopscadlib_rod_ends.csg"];
+
+#[test]
+fn dumps_have_their_reference_values() {
+    let text = fs::read_to_string(format!("{FOLDER}/reference.json")).unwrap();
+    let references: Value = serde_json::from_str(&text).unwrap();
+    let references = references.as_object().unwrap();
+    assert_eq!(references.len(), 12);
+    for (file, reference) in references {
+        let source = fs::read_to_string(format!("{FOLDER}/{file}")).unwrap();
+        let number = |key: &str| reference[key].as_f64().unwrap();
+        let bounds: Vec<f64> = reference["bbox"]
+            .as_array()
+            .unwrap()
+            .iter()
+            .map(|x| x.as_f64().unwrap())
+            .collect();
+        let size = (0..3)
+            .map(|a| bounds[a + 3] - bounds[a])
+            .fold(0.0, f64::max);
+        let tolerance = 1e-3 * size;
+        let converted = convert_model(&stages::read(&source), Rule::Tolerance(tolerance));
+        let properties = &converted.properties;
+        let allowed = number("volume_tol") + 1.1 * properties.area * tolerance;
+        let difference = (properties.volume - number("volume")).abs();
+        assert!(difference <= allowed, "{file}: volume off by {difference}");
+        let allowed = number("bbox_tol") + tolerance;
+        for (side, corner) in [properties.bounds.min, properties.bounds.max]
+            .iter()
+            .enumerate()
+        {
+            for axis in 0..3 {
+                let off = (corner[axis] - bounds[3 * side + axis]).abs();
+                assert!(
+                    off <= allowed,
+                    "{file}: box off by {off}, axis {axis}, side {side}"
+                );
+            }
+        }
+        if !SLIVERS.contains(&file.as_str()) {
+            let bodies = reference["bodies"].as_u64().unwrap();
+            assert_eq!(converted.shells.solids.len() as u64, bodies, "{file}");
+        }
+    }
+}
+
+/// Every other dump is a sound solid, too.
+#[test]
+fn dumps_without_reference_convert() {
+    let mut count = 0;
+    for entry in fs::read_dir(FOLDER).unwrap() {
+        let path = entry.unwrap().path();
+        if path.extension().is_some_and(|e| e == "csg") {
+            let source = fs::read_to_string(&path).unwrap();
+            let converted = convert_model(&stages::read(&source), Rule::Tolerance(0.3));
+            assert!(converted.properties.volume > 0.0, "{}", path.display());
+            count += 1;
+        }
+    }
+    assert_eq!(count, 16);
+}
+
+/// Converts and compares with the formula's volume; `curved`: area of the curved faces, whose
+/// facets may be off by the tolerance.
+fn check(source: &str, volume: f64, curved: f64) -> Converted {
+    let tolerance = 0.01;
+    let converted = convert(source, tolerance);
+    let difference = (converted.properties.volume - volume).abs();
+    let bound = curved * tolerance * 1.05 + 1e-9 * volume;
+    assert!(difference <= bound, "{source}: {difference} > {bound}");
+    converted
+}
+
+#[test]
+fn extruded_polygons_are_exact() {
+    let found = check(
+        "linear_extrude(height = 2) polygon(points = [[0,0],[4,0],[4,3],[2,1],[0,3]]);",
+        16.0,
+        0.0,
+    );
+    assert_eq!(found.groups.faces.len(), 7);
+    let frame =
+        "points = [[0,0],[4,0],[4,4],[0,4],[1,1],[1,3],[3,3],[3,1]], paths = [[0,1,2,3],[4,5,6,7]]";
+    let frame_found = check(
+        &format!("linear_extrude(height = 2) polygon({frame});"),
+        24.0,
+        0.0,
+    );
+    assert_eq!(frame_found.shells.genus(), 1);
+    // A pyramid: a third.
+    check(
+        &format!("linear_extrude(height = 2, scale = 0) polygon({frame});"),
+        8.0,
+        0.0,
+    );
+    let bow_tie = "linear_extrude(height = 1) polygon(points = [[0,0],[2,2],[2,0],[0,2]]);";
+    assert_eq!(check(bow_tie, 2.0, 0.0).shells.solids.len(), 2);
+}
+
+/// ∫ (1 + (a − 1)t)(1 + (b − 1)t) dt over \[0, 1\] = (2ab + a + b + 2)/6.
+#[test]
+fn tapered_extrusions_have_their_integral() {
+    for (a, b) in [(0.5, 0.5), (0.5, 2.0), (0.0, 1.0), (2.0, 3.0)] {
+        let factor = (2.0 * a * b + a + b + 2.0) / 6.0;
+        let source = format!("linear_extrude(height = 3, scale = [{a}, {b}]) circle(r = 1);");
+        let area: f64 = 2.0 * PI * 3.0 * 3.5;
+        check(&source, 3.0 * PI * factor, area);
+        let source = format!(
+            "linear_extrude(height = 3, scale = [{a}, {b}]) rotate(30) square(2, center = true);"
+        );
+        check(&source, 12.0 * factor, 3.0 * 8.0 * 3.5);
+    }
+}
+
+/// Pappus: area times the way of the centroid.
+#[test]
+fn swept_profiles_obey_pappus() {
+    let profile = "translate([3, 0]) polygon(points = [[0,0],[4,0],[4,3],[2,1],[0,3]]);";
+    for angle in [360.0, 270.0, 180.0, 45.0, -90.0_f64] {
+        let way = 5.0 * angle.abs().to_radians();
+        let source = format!("rotate_extrude(angle = {angle}) {profile}");
+        check(&source, 8.0 * way, way / 5.0 * 7.0 * 20.0);
+    }
+    let way = 2.0 * PI * 5.0;
+    check(
+        "rotate_extrude() translate([5, 1]) circle(r = 2);",
+        4.0 * PI * way,
+        4.0 * PI * way,
+    );
+    check(
+        "rotate_extrude() translate([5, 1]) rotate(30) scale([2, 1]) circle(r = 1);",
+        2.0 * PI * way,
+        10.0 * way,
+    );
+    // A regular hexagon's area is 3√3/2 r².
+    check(
+        "rotate_extrude($fn = 6) translate([2, 0]) square([1, 2]);",
+        1.5 * 3.0_f64.sqrt() * (9.0 - 4.0) * 2.0,
+        0.0,
+    );
+}
+
+/// Two discs of radius 1 at distance 4: π + 8.
+#[test]
+fn the_hull_of_discs_is_a_stadium() {
+    let source =
+        "linear_extrude(height = 1) hull() { circle(r = 1); translate([4, 0]) circle(r = 1); }";
+    let found = check(source, PI + 8.0, 2.0 * PI);
+    assert_eq!(found.shells.solids.len(), 1);
+}
+
+/// The hull of a body and its copy is its Minkowski sum with a segment: of the unit cube and
+/// (t, t, t), 1 + 3t.
+#[test]
+fn hulls_of_boxes_are_exact() {
+    for t in [0.25, 1.0, 3.0] {
+        let source =
+            format!("hull() {{ cube(1); translate([{t}, {t}, {t}]) color(\"red\") cube(1); }}");
+        let found = check(&source, 1.0 + 3.0 * t, 0.0);
+        assert_eq!(found.groups.faces.len(), 12);
+    }
+    let flush = check(
+        "hull() { cube(1); translate([2, 0, 0]) cube(1); }",
+        3.0,
+        0.0,
+    );
+    assert_eq!(flush.groups.faces.len(), 6);
+    // Two pyramids over a square of diagonal 2.
+    let octahedron = "hull() { cylinder(h = 1, r1 = 1, r2 = 0, $fn = 4); mirror([0, 0, 1]) cylinder(h = 1, r1 = 1, r2 = 0, $fn = 4); }";
+    assert_eq!(check(octahedron, 4.0 / 3.0, 0.0).groups.faces.len(), 8);
+}
+
+/// A torus of flat triangles against the divergence theorem's sum over them.
+#[test]
+fn dented_polyhedra_have_the_volume_of_their_mesh() {
+    let (rings, sides) = (12_usize, 8_usize);
+    let mut points = Vec::new();
+    for i in 0..rings {
+        for j in 0..sides {
+            let a = 2.0 * PI * i as f64 / rings as f64;
+            let b = 2.0 * PI * j as f64 / sides as f64;
+            let radius = 3.0 + b.cos();
+            points.push([radius * a.cos(), radius * a.sin(), b.sin()]);
+        }
+    }
+    let mut faces = Vec::new();
+    for i in 0..rings {
+        for j in 0..sides {
+            let (k, l) = ((i + 1) % rings, (j + 1) % sides);
+            let corner = |i: usize, j: usize| i * sides + j;
+            faces.push([corner(i, j), corner(k, j), corner(k, l)]);
+            faces.push([corner(i, j), corner(k, l), corner(i, l)]);
+        }
+    }
+    let tetrahedra = faces.iter().map(|f| {
+        let [a, b, c] = f.map(|v| glam::DVec3::from(points[v]));
+        a.dot(b.cross(c)) / 6.0
+    });
+    let volume: f64 = tetrahedra.sum();
+    let found = check(
+        &format!("polyhedron(points = {points:?}, faces = {faces:?});"),
+        volume,
+        0.0,
+    );
+    assert_eq!(found.shells.genus(), 1);
+}
