@@ -1,6 +1,8 @@
 //! Every model in `fixtures/`, in every mesh format: closed in manifold3d's eyes, and the same
 //! bytes for any number of threads.
 
+#![allow(clippy::unwrap_used, reason = "a panic is how a test fails")]
+
 mod stages;
 mod support;
 

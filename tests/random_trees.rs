@@ -4,6 +4,8 @@
 //! `CSG2BREP_TREES=10000 CSG2BREP_SEED=1 cargo test --release --test random_trees` runs others
 //! than the 500 of a normal test run; `docs/reliability.md` lists what has been run.
 
+#![allow(clippy::unwrap_used, reason = "a panic is how a test fails")]
+
 mod stages;
 mod support;
 
