@@ -1,0 +1,107 @@
+//! From coarse to fine: what each program yields at many settings, and the coarsest that is close
+//! enough.
+
+use crate::measure::{Distances, Spread, measure};
+use crate::solids::Solid;
+use crate::tools::{self, Form, Grid};
+use crate::truth::Truth;
+use subdiv::Rule;
+
+/// What a program is told.
+#[derive(Clone, Copy, Debug)]
+pub enum Setting {
+    /// Ours.
+    Ours(Rule),
+    /// fidget's.
+    Fidget(Form, Grid),
+}
+
+/// A setting and the mesh it gave.
+#[derive(Clone, Copy, Debug)]
+pub struct Attempt {
+    /// What the program was told.
+    pub setting: Setting,
+    /// Triangles of the mesh.
+    pub triangles: usize,
+    /// Its vertices that were not numbers.
+    pub not_numbers: usize,
+    /// How far it is from the truth.
+    pub distances: Distances,
+}
+
+impl Attempt {
+    fn of(setting: Setting, mesh: &tools::Mesh, truth: &Truth<'_>) -> Option<Self> {
+        Some(Self {
+            setting,
+            triangles: mesh.triangles.len(),
+            not_numbers: mesh.not_numbers,
+            distances: measure(mesh, truth)?,
+        })
+    }
+
+    /// The larger of both distances, of those that `which` picks.
+    pub fn error(&self, which: fn(Spread) -> f64) -> f64 {
+        which(self.distances.to_boundary).max(which(self.distances.to_mesh))
+    }
+}
+
+/// Adds attempts until one has no error above `finest`.
+fn until(finest: f64, attempts: impl Iterator<Item = Option<Attempt>>) -> Vec<Attempt> {
+    let mut list = Vec::new();
+    for attempt in attempts.flatten() {
+        list.push(attempt);
+        if attempt.error(|spread| spread.worst) <= finest {
+            break;
+        }
+    }
+    list
+}
+
+fn ours(
+    rules: impl Iterator<Item = Rule>,
+    model: &csg::Model,
+    truth: &Truth<'_>,
+    finest: f64,
+) -> Vec<Attempt> {
+    let attempts = rules.map(|rule| {
+        let mesh = tools::our_mesh(&tools::ours(model, rule).fragments);
+        Attempt::of(Setting::Ours(rule), &mesh, truth)
+    });
+    until(finest, attempts)
+}
+
+/// Our meshes at falling tolerances, eight to a factor of four.
+pub fn our_tolerances(model: &csg::Model, truth: &Truth<'_>, finest: f64) -> Vec<Attempt> {
+    let rule =
+        |k: i32| Rule::Tolerance(0.25 * truth.longest_side * 0.25f64.powf(f64::from(k) / 8.0));
+    ours((0..64).map(rule), model, truth, finest)
+}
+
+/// Our meshes at rising levels.
+pub fn our_levels(model: &csg::Model, truth: &Truth<'_>, finest: f64) -> Vec<Attempt> {
+    ours((3..28).map(Rule::Level), model, truth, finest)
+}
+
+/// Sides of fidget's cube, in longest sides of the solid: a depth more halves the cells, and
+/// these are the steps between.
+const CUBES: [f64; 4] = [1.75, 1.47, 1.24, 1.04];
+
+/// Levels tried.
+const DEPTHS: std::ops::RangeInclusive<u8> = 2..=9;
+
+/// fidget's meshes, by falling cell size.
+pub fn fidget_grids(solid: &Solid, form: Form, truth: &Truth<'_>, finest: f64) -> Vec<Attempt> {
+    let expression = tools::expression(solid, form);
+    let grids = DEPTHS.flat_map(|depth| {
+        CUBES.map(|cube| Grid {
+            depth,
+            half: 0.5 * cube * truth.longest_side,
+            middle: truth.middle,
+        })
+    });
+    let attempts = grids.map(|grid| {
+        let mesh = tools::fidget_mesh(&tools::fidget(&expression, grid));
+        Attempt::of(Setting::Fidget(form, grid), &mesh, truth)
+    });
+    until(finest, attempts)
+}
