@@ -76,3 +76,13 @@ fn core_dumps_have_their_reference_values() {
     }
     assert!(compared >= 20, "genus compared for {compared} files only");
 }
+
+/// A Menger sponge of 221 cubes: where many planes crowd in a leaf, pieces must not fold over
+/// each other. manifold3d's area of it, to all digits that the reference gives, is 130468.34.
+#[test]
+fn crowded_pieces_do_not_fold() {
+    let source = fs::read_to_string(format!("{FOLDER}/example024.csg")).unwrap();
+    let converted = convert_model(&stages::read(&source), Rule::Tolerance(0.1));
+    let area = converted.properties.area;
+    assert!((area - 130_468.34).abs() <= 0.005, "{area}");
+}

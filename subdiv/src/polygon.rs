@@ -1,6 +1,6 @@
 //! Triangulation of one planar piece of the boundary between given mesh vertices.
 
-use crate::arrange::NO_PLANE;
+use crate::arrange::{FACET, NO_PLANE};
 use crate::leaf_formula::Label;
 use crate::mesh::MeshBuilder;
 use glam::{DVec2, DVec3};
@@ -31,8 +31,9 @@ impl PieceTriangulator {
     /// primitive is positive; `ring` is used up.
     ///
     /// No diagonal joins two corners that share a plane besides the piece's own: they lie on a
-    /// common side, and the neighbour there may join them, too. When no ear is left, the rest is
-    /// a fan around a new inner vertex.
+    /// common side, and the neighbour there may join them, too. When no ear is left, corners on
+    /// one primitive may be joined across the piece, where that primitive makes no boundary; then
+    /// the rest is a fan around a new inner vertex.
     pub(crate) fn triangulate(
         &mut self,
         ring: &mut Vec<Corner>,
@@ -43,7 +44,8 @@ impl PieceTriangulator {
             self.flatten(ring, mesh);
         }
         while ring.len() > 3 {
-            let Some(ear) = self.best_ear(ring, own) else {
+            let strict = self.best_ear(ring, |a, c| share_a_side(a, c, own));
+            let Some(ear) = strict.or_else(|| self.best_ear(ring, share_a_facet)) else {
                 fan(ring, primitive, label, mesh);
                 return;
             };
@@ -88,13 +90,17 @@ impl PieceTriangulator {
     }
 
     /// The convex, empty, allowed ear with the shortest diagonal.
-    fn best_ear(&self, ring: &[Corner], own: u16) -> Option<usize> {
+    fn best_ear(
+        &self,
+        ring: &[Corner],
+        forbidden: impl Fn(Corner, Corner) -> bool,
+    ) -> Option<usize> {
         let n = ring.len();
         let mut best = None;
         for ear in 0..n {
             let (before, after) = ((ear + n - 1) % n, (ear + 1) % n);
             let (a, c) = (ring[before], ring[after]);
-            if share_a_side(a, c, own) || self.diagonals.contains(&diagonal(a, c)) {
+            if forbidden(a, c) || self.diagonals.contains(&diagonal(a, c)) {
                 continue;
             }
             let [p, q, r] = [before, ear, after].map(|at| self.flat[at]);
@@ -127,6 +133,16 @@ fn share_a_side(a: Corner, b: Corner, own: u16) -> bool {
         || a.planes
             .iter()
             .any(|p| *p != own && *p != NO_PLANE && b.planes.contains(p))
+}
+
+/// Whether two corners lie in one facet of the simplex, where a neighbour may join them.
+fn share_a_facet(a: Corner, b: Corner) -> bool {
+    let in_facet = |p: &&u16| **p >= FACET && **p != NO_PLANE;
+    a.vertex == b.vertex
+        || a.planes
+            .iter()
+            .filter(in_facet)
+            .any(|p| b.planes.contains(p))
 }
 
 fn fan(ring: &[Corner], primitive: u32, label: Label, mesh: &mut MeshBuilder) {
