@@ -6,8 +6,11 @@ use glam::DVec3;
 use std::time::Instant;
 use subdiv::{Outcome, Rule};
 
-/// Runs of which the quickest counts.
+/// Runs of a conversion, of which the quickest counts.
 const RUNS: usize = 7;
+
+/// Runs of what takes microseconds.
+const SHORT_RUNS: usize = 300;
 
 /// Prints both tables as Markdown.
 pub(crate) fn print() {
@@ -23,14 +26,14 @@ fn by_degree() {
     let block = || Shape::block(-DVec3::ONE, DVec3::ONE).map(single);
     let block = block().expect("corners in order");
     // What a conversion costs without any polynomial worth the name: starting the thread.
-    let idle_s = least(&block, Rule::Level(0)).1;
+    let idle_s = least(&block, Rule::Level(0), SHORT_RUNS).1;
     for degree in std::iter::once(1).chain((2..=20).step_by(2)) {
         let solid = match degree {
             1 => block.clone(),
             _ => power_ball(degree),
         };
-        let roots_s = (least(&solid, Rule::Level(0)).1 - idle_s).max(0.0);
-        let (outcome, total_s) = least(&solid, Rule::Level(LEVEL));
+        let roots_s = (least(&solid, Rule::Level(0), SHORT_RUNS).1 - idle_s).max(0.0);
+        let (outcome, total_s) = least(&solid, Rule::Level(LEVEL), RUNS);
         let bisections = outcome.report.bisections;
         let each_ns = (total_s - roots_s - idle_s) * 1e9 / bisections as f64;
         println!(
@@ -53,7 +56,7 @@ fn by_solid() {
         let solid = sample.solid();
         let size = (solid.extent.max - solid.extent.min).max_element();
         for rule in [Rule::Level(LEVEL), Rule::Tolerance(TOLERANCE * size)] {
-            let (outcome, total_s) = least(&solid, rule);
+            let (outcome, total_s) = least(&solid, rule, RUNS);
             println!("| {sample} | {} |", row(rule, &outcome, total_s));
         }
     }
@@ -88,8 +91,8 @@ fn row(rule: Rule, outcome: &Outcome, total_s: f64) -> String {
 }
 
 /// The quickest of several runs, and its seconds.
-fn least(solid: &Solid, rule: Rule) -> (Outcome, f64) {
-    let runs = (0..RUNS).map(|_| {
+fn least(solid: &Solid, rule: Rule, count: usize) -> (Outcome, f64) {
+    let runs = (0..count).map(|_| {
         let start = Instant::now();
         let outcome = converted(solid, rule);
         (outcome, start.elapsed().as_secs_f64())

@@ -19,7 +19,11 @@ fn main() {
     if !only_named {
         costs::print();
     }
-    divan::main();
+    // Options on the command line come last and win.
+    divan::Divan::default()
+        .sample_count(20)
+        .config_with_args()
+        .main();
 }
 
 /// Root conversion with its six leaves: everything that is not bisection.

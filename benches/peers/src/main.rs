@@ -56,7 +56,9 @@ fn main() {
                  true to mesh | peak bytes a triangle |"
             );
             println!("|---|---|---|---:|---:|---:|---:|---:|\n{}", table.rows);
-            println!("| solid | tolerance | with B-Rep | fixed level | triangles |");
+            println!(
+                "| ours / fidget | tolerance | tolerance, to B-Rep | fixed level | triangles |"
+            );
             println!("|---|---:|---:|---:|---:|\n{}", table.ratios);
         }
     }
