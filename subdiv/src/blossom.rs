@@ -13,6 +13,7 @@
 //! over permutations took 14 minutes at degree 6, Table 6.1).
 
 use crate::bernstein::{count, for_each_index, index};
+use crate::rounding;
 use crate::simplex::ROOT_AXES;
 use csg::Primitive;
 
@@ -23,8 +24,10 @@ pub(crate) struct RootCoefficients {
     pub degree: usize,
     /// One list for each root simplex, in the order of [`ROOT_AXES`].
     pub roots: [Vec<f64>; 6],
-    /// Bound on the absolute error of every coefficient here and in all descendants.
-    pub error: f64,
+    /// Bound on the rounding of every coefficient here.
+    pub rounding: f64,
+    /// Bound on the error of the polynomial itself, see [`crate::rounding`].
+    pub model_error: f64,
 }
 
 impl RootCoefficients {
@@ -35,16 +38,12 @@ impl RootCoefficients {
         let power = primitive.polynomial.coefficients();
         let mut roots = ROOT_AXES.map(|axes| convert(degree, power, axes));
         share_facets(degree, &mut roots);
-        // Three passes of at most n+1 products of a ratio (n roundings) each, then at most 57
-        // halvings of n averages; every intermediate is bounded by the sum of magnitudes.
         let magnitude: f64 = power.iter().map(|c| c.abs()).sum();
-        let roundings = 3 * (degree + 1) * 2 + 57 * degree;
-        let error = roundings as f64 * f64::EPSILON * magnitude
-            + primitive.coefficient_error * power.len() as f64;
         Self {
             degree,
             roots,
-            error,
+            rounding: rounding::of_conversion(degree, magnitude),
+            model_error: rounding::of_model(primitive),
         }
     }
 }
@@ -153,7 +152,8 @@ mod tests {
                 let point: DVec3 = (0..4).map(|v| simplex.vertices[v].position() * b[v]).sum();
                 let expected = primitive.polynomial.evaluate(point);
                 let got = evaluate(degree as usize, coefficients, b);
-                prop_assert!((got - expected).abs() <= 2.0 * roots.error, "{got} {expected}");
+                // Both evaluations round at most as often as the conversion.
+                prop_assert!((got - expected).abs() <= 4.0 * roots.rounding, "{got} {expected}");
             }
         }
     }

@@ -13,15 +13,23 @@ pub enum Criterion {
     Rivlin,
 }
 
-/// Classifies against `p ≤ 0`: `In` when p < 0 is proved in the whole simplex, `Out` when p > 0
-/// is; `error` bounds the absolute error of the coefficients.
+/// A primitive in a simplex.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Class {
+    /// `In` when p < 0 is proved in the whole simplex, `Out` when p > 0 is.
+    pub value: Ternary,
+    /// Its largest absolute coefficient.
+    pub largest: f64,
+}
+
+/// Classifies against `p ≤ 0`; `error` bounds the absolute error of the coefficients.
 #[must_use]
 pub(crate) fn classify(
     criterion: Criterion,
     degree: usize,
     coefficients: &[f64],
     error: f64,
-) -> Ternary {
+) -> Class {
     let (low, high) = match degree {
         1 => range::<4>(coefficients),
         2 => range::<10>(coefficients),
@@ -35,22 +43,29 @@ pub(crate) fn classify(
                 (low.min(*c), high.max(*c))
             }),
     };
-    if low > error {
-        return Ternary::Out;
-    }
-    if high < -error {
-        return Ternary::In;
-    }
-    if criterion == Criterion::Rivlin {
-        // The bound needs the sign at every coefficient but the extreme one.
-        if rivlin_lower_bound(degree, coefficients, 1.0) > error {
-            return Ternary::Out;
+    let value = if low > error {
+        Ternary::Out
+    } else if high < -error {
+        Ternary::In
+    } else {
+        match criterion {
+            Criterion::Bezier => Ternary::Unknown,
+            Criterion::Rivlin => by_rivlin(degree, coefficients, error),
         }
-        if rivlin_lower_bound(degree, coefficients, -1.0) > error {
-            return Ternary::In;
-        }
+    };
+    let largest = high.max(-low);
+    Class { value, largest }
+}
+
+/// The bound needs the sign at every coefficient but the extreme one.
+fn by_rivlin(degree: usize, coefficients: &[f64], error: f64) -> Ternary {
+    if rivlin_lower_bound(degree, coefficients, 1.0) > error {
+        Ternary::Out
+    } else if rivlin_lower_bound(degree, coefficients, -1.0) > error {
+        Ternary::In
+    } else {
+        Ternary::Unknown
     }
-    Ternary::Unknown
 }
 
 fn range<const N: usize>(coefficients: &[f64]) -> (f64, f64) {
@@ -80,7 +95,9 @@ fn rivlin_lower_bound(degree: usize, coefficients: &[f64], sign: f64) -> f64 {
         }
     });
     let (extreme, exponents) = smallest;
-    next + (extreme - next) * largest_bernstein(degree, exponents)
+    let bound = next + (extreme - next) * largest_bernstein(degree, exponents);
+    // A difference, a product and a sum, each rounded once.
+    bound - 2.0 * f64::EPSILON * (next.abs() + extreme.abs())
 }
 
 /// B_m(m/n) = n!/(i!j!k!l!) · Π (m_v/n)^m_v.
@@ -113,7 +130,7 @@ mod tests {
         ) {
             let criterion = if rivlin { Criterion::Rivlin } else { Criterion::Bezier };
             let c: Vec<f64> = seed[..count(degree)].iter().map(|x| x + shift).collect();
-            let class = classify(criterion, degree, &c, 1e-12);
+            let class = classify(criterion, degree, &c, 1e-12).value;
             for b in samples {
                 let sum = b.iter().sum::<f64>().max(1e-9);
                 let value = evaluate(degree, &c, b.map(|x| x / sum));
@@ -131,7 +148,8 @@ mod tests {
     fn rivlin_decides_more_than_bezier() {
         let mut c = vec![1.0; 10];
         c[3] = -0.4;
-        assert_eq!(classify(Criterion::Bezier, 2, &c, 0.0), Ternary::Unknown);
-        assert_eq!(classify(Criterion::Rivlin, 2, &c, 0.0), Ternary::Out);
+        let by = |criterion| classify(criterion, 2, &c, 0.0).value;
+        assert_eq!(by(Criterion::Bezier), Ternary::Unknown);
+        assert_eq!(by(Criterion::Rivlin), Ternary::Out);
     }
 }

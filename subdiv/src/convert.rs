@@ -95,7 +95,7 @@ impl<'a> Plan<'a> {
     }
 
     pub(crate) fn walker(&self) -> Walker {
-        Walker::new(self.solid, &self.roots, self.settings.criterion)
+        Walker::new(self.solid, self.settings.criterion)
     }
 }
 

@@ -51,6 +51,7 @@ mod pieces;
 mod polygon;
 mod predicates;
 mod prove;
+mod rounding;
 mod settings;
 mod sheets;
 mod simplex;

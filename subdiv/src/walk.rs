@@ -5,6 +5,7 @@ use crate::bernstein::{count, vertex_values};
 use crate::blossom::RootCoefficients;
 use crate::classify::{Criterion, classify};
 use crate::halving::halve;
+use crate::rounding::of_halving;
 use crate::simplex::Simplex;
 use csg::{FormulaNode, LocalizeScratch, PrimitiveId, Solid, Ternary, localize};
 
@@ -17,6 +18,20 @@ pub(crate) struct Active {
     pub degree: u32,
     /// Where its coefficients begin in [`Frame::coefficients`].
     pub offset: u32,
+    /// Bound on their rounding, against the polynomial that the subdivision was given.
+    pub rounding: f64,
+    /// Bound on that polynomial's error against the user's model; the same everywhere.
+    pub model_error: f64,
+    /// Its largest absolute coefficient.
+    largest: f64,
+}
+
+impl Active {
+    /// Bound on the error of its coefficients against the user's model.
+    #[must_use]
+    pub(crate) fn error(&self) -> f64 {
+        self.rounding + self.model_error
+    }
 }
 
 /// What is known of the solid in one simplex.
@@ -60,13 +75,6 @@ pub(crate) struct Sector {
     pub frame: Frame,
 }
 
-/// Bounds that hold for a primitive everywhere.
-#[derive(Clone, Copy, Debug)]
-struct Bound {
-    /// Bound on the error of its Bernstein coefficients.
-    error: f64,
-}
-
 /// Visits the simplices that meet the boundary.
 pub(crate) trait Visitor {
     /// Looks at a simplex whose formula is undecided; whether to bisect it.
@@ -82,7 +90,6 @@ pub(crate) trait Visitor {
 #[derive(Debug)]
 pub(crate) struct Walker {
     criterion: Criterion,
-    bounds: Vec<Bound>,
     /// Two children per level below the sector.
     frames: Vec<[Frame; 2]>,
     /// Value of each primitive in the child at hand.
@@ -96,11 +103,10 @@ pub(crate) struct Walker {
 impl Walker {
     /// A walker for this solid.
     #[must_use]
-    pub(crate) fn new(solid: &Solid, roots: &[RootCoefficients], criterion: Criterion) -> Self {
+    pub(crate) fn new(solid: &Solid, criterion: Criterion) -> Self {
         let n = solid.primitives.len();
         Self {
             criterion,
-            bounds: roots.iter().map(|r| Bound { error: r.error }).collect(),
             frames: Vec::new(),
             values: [vec![Ternary::Unknown; n], vec![Ternary::Unknown; n]],
             used: vec![0; n],
@@ -117,14 +123,19 @@ impl Walker {
             let mut frame = Frame::default();
             for (primitive, root) in roots.iter().enumerate() {
                 let coefficients = &root.roots[at];
-                let value = classify(self.criterion, root.degree, coefficients, root.error);
-                self.values[0][primitive] = value;
-                if value == Ternary::Unknown {
-                    frame.active.push(Active {
-                        primitive: primitive as u32,
-                        degree: root.degree as u32,
-                        offset: frame.coefficients.len() as u32,
-                    });
+                let mut active = Active {
+                    primitive: primitive as u32,
+                    degree: root.degree as u32,
+                    offset: frame.coefficients.len() as u32,
+                    rounding: root.rounding,
+                    model_error: root.model_error,
+                    largest: 0.0,
+                };
+                let class = classify(self.criterion, root.degree, coefficients, active.error());
+                self.values[0][primitive] = class.value;
+                if class.value == Ternary::Unknown {
+                    active.largest = class.largest;
+                    frame.active.push(active);
                     frame.coefficients.extend_from_slice(coefficients);
                 }
             }
@@ -203,16 +214,19 @@ impl Walker {
                 &mut near.coefficients[starts[0]..],
                 &mut far.coefficients[starts[1]..],
             );
-            let error = self.bounds[active.primitive as usize].error;
+            let mut child = Active {
+                rounding: of_halving(degree, active.rounding, active.largest),
+                ..*active
+            };
             for (side, frame) in [&mut *near, &mut *far].into_iter().enumerate() {
                 let start = starts[side];
-                let value = classify(self.criterion, degree, &frame.coefficients[start..], error);
-                self.values[side][active.primitive as usize] = value;
-                if value == Ternary::Unknown {
-                    frame.active.push(Active {
-                        offset: start as u32,
-                        ..*active
-                    });
+                let coefficients = &frame.coefficients[start..];
+                let class = classify(self.criterion, degree, coefficients, child.error());
+                self.values[side][active.primitive as usize] = class.value;
+                if class.value == Ternary::Unknown {
+                    child.offset = start as u32;
+                    child.largest = class.largest;
+                    frame.active.push(child);
                 } else {
                     frame.coefficients.truncate(start);
                     decided[side] = true;

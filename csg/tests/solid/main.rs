@@ -9,4 +9,5 @@ mod extents;
 mod interning;
 mod membership;
 mod oracle;
+mod rounding;
 mod scale;
