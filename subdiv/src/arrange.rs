@@ -296,35 +296,6 @@ fn normalization(planes: &Planes<'_>, rows: &[usize], columns: &[usize]) -> Sign
     minor_sign(&minor).times(Sign::of(rows.len().is_multiple_of(2)))
 }
 
-/// Homogeneous barycentric coordinates of a vertex by cofactors in floating point, clamped to
-/// the face in which it lies; `None` where they all vanish.
-#[must_use]
-pub(crate) fn barycentric(planes: &Planes<'_>, name: [u16; 3]) -> Option<[f64; 4]> {
-    let (rows, columns) = support(name);
-    let mut b = [0.0; 4];
-    for (at, &column) in columns.iter().enumerate() {
-        let mut rest = Indices::default();
-        for &other in columns.iter().filter(|other| **other != column) {
-            rest.push(other);
-        }
-        let m = select(planes, &rows, &rest).entries;
-        let det = match rows.len() {
-            1 => m[0][0],
-            2 => m[0][0] * m[1][1] - m[0][1] * m[1][0],
-            _ => {
-                m[0][0] * (m[1][1] * m[2][2] - m[1][2] * m[2][1])
-                    - m[0][1] * (m[1][0] * m[2][2] - m[1][2] * m[2][0])
-                    + m[0][2] * (m[1][0] * m[2][1] - m[1][1] * m[2][0])
-            }
-        };
-        b[column] = if at % 2 == 0 { det } else { -det };
-    }
-    let sum: f64 = b.iter().sum();
-    let b = b.map(|x| (x / sum).max(0.0));
-    let sum: f64 = b.iter().sum();
-    (sum.is_finite() && sum > 0.0).then(|| b.map(|x| x / sum))
-}
-
 /// An edge of the simplex that a polygon's vertex lies on, and the facet (by its opposite
 /// vertex) through which the polygon's boundary goes on from there.
 pub(crate) type PolygonCorner = ([usize; 2], usize);

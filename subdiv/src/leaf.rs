@@ -1,6 +1,7 @@
 //! One leaf of the subdivision with the primitives that cross it, and where its vertices lie.
 
-use crate::arrange::{Arrangement, FACET, Planes, barycentric, support};
+use crate::arrange::{Arrangement, FACET, Planes, support};
+use crate::barycentric::barycentric;
 use crate::certify::barycentric_gradients;
 use crate::leaf_formula::{Label, Pattern};
 use crate::mesh::MeshBuilder;
@@ -25,7 +26,7 @@ impl Leaf<'_> {
     /// where Newton's method finds them inside the vertex' face, else on their interpolants.
     pub(crate) fn position(&self, name: [u16; 3], snapper: &mut Snapper) -> DVec3 {
         let (rows, columns) = support(name);
-        let affine = self.affine_barycentric(name);
+        let affine = barycentric(&self.planes, name);
         let polynomials: ArrayVec<_, 3> = rows.iter().map(|row| self.polynomials[*row]).collect();
         let curved = polynomials.iter().any(|p| p.degree > 1);
         let snapped = curved.then(|| snapper.crossing(&polynomials, &columns, affine));
@@ -34,19 +35,7 @@ impl Leaf<'_> {
 
     /// Position of an arrangement vertex on the interpolants.
     pub(crate) fn affine_position(&self, name: [u16; 3]) -> DVec3 {
-        self.at(self.affine_barycentric(name))
-    }
-
-    fn affine_barycentric(&self, name: [u16; 3]) -> [f64; 4] {
-        barycentric(&self.planes, name).unwrap_or_else(|| {
-            // All minors vanish: the planes coincide on the face. Any of its points will do.
-            let (_, columns) = support(name);
-            let mut weights = [0.0; 4];
-            for &column in &columns {
-                weights[column] = 1.0 / columns.len() as f64;
-            }
-            weights
-        })
+        self.at(barycentric(&self.planes, name))
     }
 
     fn at(&self, b: [f64; 4]) -> DVec3 {

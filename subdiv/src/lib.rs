@@ -32,6 +32,7 @@
 
 mod arrange;
 mod balance;
+mod barycentric;
 mod bernstein;
 mod blossom;
 mod certify;

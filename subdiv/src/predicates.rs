@@ -78,7 +78,8 @@ pub(crate) fn minor_sign(minor: &Minor) -> Sign {
 }
 
 /// Determinant in floating point and a bound on its error.
-fn filtered(n: usize, m: &[[f64; 4]; 4]) -> (f64, f64) {
+#[must_use]
+pub(crate) fn filtered(n: usize, m: &[[f64; 4]; 4]) -> (f64, f64) {
     // Cofactor expansion: at most 2n+1 roundings on any path, on terms whose magnitudes sum up
     // to the permanent of |m|; 16 units cover n = 4 with the rounding of the bound itself. The
     // constant keeps results that lost bits to underflow out of the filter.
@@ -159,45 +160,49 @@ fn exact(n: usize, m: &[[f64; 4]; 4]) -> i8 {
 
 /// The same in integers, for any finite entries.
 fn exact_big(n: usize, m: &[[f64; 4]; 4]) -> i8 {
-    let lowest = m[..n]
-        .iter()
-        .flat_map(|row| &row[..n])
-        .filter(|x| **x != 0.0)
-        .map(|x| decompose(*x).1)
-        .min()
-        .unwrap_or(0);
-    let entries: Vec<Vec<BigInt>> = m[..n]
-        .iter()
-        .map(|row| {
-            row[..n]
-                .iter()
-                .map(|x| {
-                    let (mantissa, exponent) = decompose(*x);
-                    if mantissa == 0 {
-                        BigInt::ZERO
-                    } else {
-                        BigInt::from(mantissa) << (exponent - lowest)
-                    }
-                })
-                .collect()
-        })
-        .collect();
-    let columns: Vec<usize> = (0..n).collect();
-    match big_determinant(&entries, 0, &columns).sign() {
+    let values: Vec<Vec<f64>> = m[..n].iter().map(|row| row[..n].to_vec()).collect();
+    let all: Vec<usize> = (0..n).collect();
+    match big_determinant(&scaled_integers(&values), &all, &all).sign() {
         BigSign::Minus => -1,
         BigSign::NoSign => 0,
         BigSign::Plus => 1,
     }
 }
 
-fn big_determinant(m: &[Vec<BigInt>], row: usize, columns: &[usize]) -> BigInt {
-    if let [only] = columns {
-        return m[row][*only].clone();
-    }
+/// Finite numbers times a common power of two that makes all of them integers.
+#[must_use]
+pub(crate) fn scaled_integers(values: &[Vec<f64>]) -> Vec<Vec<BigInt>> {
+    let lowest = values
+        .iter()
+        .flatten()
+        .filter(|x| **x != 0.0)
+        .map(|x| decompose(*x).1)
+        .min()
+        .unwrap_or(0);
+    let scaled = |x: &f64| {
+        let (mantissa, exponent) = decompose(*x);
+        if mantissa == 0 {
+            BigInt::ZERO
+        } else {
+            BigInt::from(mantissa) << (exponent - lowest)
+        }
+    };
+    values
+        .iter()
+        .map(|row| row.iter().map(scaled).collect())
+        .collect()
+}
+
+/// Determinant of the given rows and columns, as many of the one as of the other; 1 of none.
+#[must_use]
+pub(crate) fn big_determinant(m: &[Vec<BigInt>], rows: &[usize], columns: &[usize]) -> BigInt {
+    let Some((row, below)) = rows.split_first() else {
+        return BigInt::from(1);
+    };
     let mut sum = BigInt::ZERO;
     for (at, column) in columns.iter().enumerate() {
         let rest: Vec<usize> = columns.iter().copied().filter(|c| c != column).collect();
-        let term = &m[row][*column] * big_determinant(m, row + 1, &rest);
+        let term = &m[*row][*column] * big_determinant(m, below, &rest);
         if at % 2 == 0 {
             sum += term;
         } else {
