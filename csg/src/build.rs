@@ -7,8 +7,8 @@ use crate::matrix::{Bounded, IDENTITY};
 use crate::simplify::{Simplified, simplify};
 use crate::survey::Survey;
 use crate::{
-    Aabb, Domain, Error, Formula, FormulaNode, MaterialId, Model, NearlyEqual, Polynomial,
-    Primitive, PrimitiveId, Sense, Solid,
+    Aabb, Domain, DomainFit, Error, Formula, FormulaNode, MaterialId, Model, NearlyEqual,
+    Polynomial, Primitive, PrimitiveId, Sense, Solid,
 };
 use glam::DVec3;
 
@@ -24,6 +24,14 @@ impl Solid {
     /// box is given and none is found; [`Error::NonFinite`] and [`Error::ExtentOutOfRange`] when
     /// numbers are beyond floating point.
     pub fn build(model: &Model, clip: Option<Aabb>) -> Result<Self, Error> {
+        Self::build_fitted(model, clip, DomainFit::default())
+    }
+
+    /// The same in a domain of another size and position.
+    ///
+    /// # Errors
+    /// Those of [`Solid::build`].
+    pub fn build_fitted(model: &Model, clip: Option<Aabb>, fit: DomainFit) -> Result<Self, Error> {
         if clip.is_some_and(|clip| !has_volume(&clip) || !clip.is_finite()) {
             return Err(Error::BadClipBox);
         }
@@ -45,7 +53,7 @@ impl Solid {
         if !bounds.is_finite() {
             return Err(Error::Unbounded);
         }
-        let domain = domain_around(&bounds)?;
+        let domain = domain_around(&bounds, fit)?;
         let mut lowered = match constant {
             Some(_) => Lowered::new(Region::UnitCube),
             None => Lowered::of(model, &survey, &to_model(&domain), Region::UnitCube)?,
@@ -97,8 +105,8 @@ fn has_volume(bounds: &Aabb) -> bool {
 }
 
 /// The domain of a solid, if it has enough digits to tell the solid's points apart.
-fn domain_around(bounds: &Aabb) -> Result<Domain, Error> {
-    let domain = Domain::around(bounds);
+fn domain_around(bounds: &Aabb, fit: DomainFit) -> Result<Domain, Error> {
+    let domain = Domain::fitted(bounds, fit);
     let farthest = bounds.min.abs().max(bounds.max.abs()).max_element();
     let size = domain.size();
     let exponent_in_range = (1e-100..1e100).contains(&size);

@@ -14,22 +14,53 @@ pub struct Domain {
     size: f64,
 }
 
-/// Ratio of the cube's side to the extent's longest side: enough room for the clip box and for
-/// the deviation of facets at the coarsest tolerance, and not a round number.
-const MARGIN: f64 = 1.073_618_3;
+/// How much larger than a solid's extent its domain is, and where in it the extent lies.
+///
+/// The result of a conversion depends on it as it depends on rounding: in the mesh, and in what
+/// becomes of surfaces that touch. Proved topology does not.
+#[derive(Clone, Copy, PartialEq, Debug)]
+pub struct DomainFit {
+    margin: f64,
+    shift: DVec3,
+}
 
-/// Displacement of the extent's centre from the cube's, in cube sides, different on each axis
-/// and far from the dyadic fractions at which lattice planes lie.
-const SHIFT: DVec3 = DVec3::new(0.009_173_1, -0.012_951_7, 0.006_837_9);
+impl DomainFit {
+    /// `margin`: ratio of the cube's side to the extent's longest side; `shift`: displacement of
+    /// the extent's centre from the cube's, in cube sides. `None` unless at least 1 % of the side
+    /// is left around the extent. Neither should be a round number.
+    #[must_use]
+    pub fn new(margin: f64, shift: DVec3) -> Option<Self> {
+        let room = 0.5 * (1.0 - 1.0 / margin) - shift.abs().max_element();
+        (margin.is_finite() && room >= 0.01).then_some(Self { margin, shift })
+    }
+}
+
+impl Default for DomainFit {
+    /// Enough room for the clip box and for the deviation of facets at the coarsest tolerance;
+    /// shifts that are different on each axis and far from the dyadic fractions at which lattice
+    /// planes lie.
+    fn default() -> Self {
+        Self {
+            margin: 1.073_618_3,
+            shift: DVec3::new(0.009_173_1, -0.012_951_7, 0.006_837_9),
+        }
+    }
+}
 
 impl Domain {
-    /// The domain for a solid with this extent, which must be finite and not empty.
+    /// The usual domain for a solid with this extent, which must be finite and not empty.
     #[must_use]
     pub fn around(extent: &Aabb) -> Self {
-        let size = (extent.max - extent.min).max_element() * MARGIN;
+        Self::fitted(extent, DomainFit::default())
+    }
+
+    /// A domain for a solid with this extent, which must be finite and not empty.
+    #[must_use]
+    pub fn fitted(extent: &Aabb, fit: DomainFit) -> Self {
+        let size = (extent.max - extent.min).max_element() * fit.margin;
         let center = (extent.min + extent.max) * 0.5;
         Self {
-            origin: center - size * (DVec3::splat(0.5) + SHIFT),
+            origin: center - size * (DVec3::splat(0.5) + fit.shift),
             size,
         }
     }

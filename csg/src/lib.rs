@@ -61,7 +61,7 @@ mod transform;
 mod walk;
 
 pub use aabb::Aabb;
-pub use domain::Domain;
+pub use domain::{Domain, DomainFit};
 pub use error::Error;
 pub use formula::{Formula, FormulaNode, Literal, MaterialId, PrimitiveId, Sense};
 pub use model::{Model, ModelBuilder, Node, NodeId};
