@@ -131,6 +131,10 @@ pub(crate) struct ModelArgs {
         value_parser = clap::value_parser!(u8).range(0..=i64::from(subdiv::MAX_LEVEL))
     )]
     pub(crate) level: Option<u8>,
+    /// Prove the topology only: components, holes, faces, edges and corners are right, however
+    /// coarse the mesh. Cells as small as the tolerance that prove nothing are listed
+    #[arg(long, conflicts_with = "level", help_heading = "Precision")]
+    pub(crate) topology_only: bool,
     /// Deepest level that a tolerance may lead to [default: where cells are as small as it]
     #[arg(
         long,

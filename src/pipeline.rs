@@ -84,7 +84,7 @@ fn subdivide(
         return Ok(Fragments::default());
     }
     let settings = job.settings(solid.extent.diagonal());
-    if let Rule::Tolerance(tolerance) = settings.rule {
+    if let Rule::Tolerance(tolerance) | Rule::Topology { finest: tolerance } = settings.rule {
         report.settings.tolerance = Some(tolerance);
     }
     let outcome = subdiv::convert(solid, &settings, progress);

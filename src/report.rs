@@ -70,6 +70,9 @@ pub(crate) struct SettingsReport {
     /// In model units; none with a fixed level.
     pub(crate) tolerance: Option<f64>,
     pub(crate) level: Option<u8>,
+    /// Whether subdivision ends as soon as the topology is proved; the tolerance is then the
+    /// size of the finest cells.
+    pub(crate) topology_only: bool,
     pub(crate) max_level: Option<u8>,
     pub(crate) criterion: &'static str,
     pub(crate) mesh: &'static str,
@@ -173,6 +176,7 @@ impl Report {
         self.counts.leaves = of.leaves;
         self.counts.bisections = of.bisections;
         self.proved_distance = of.largest_deviation;
+        self.proved_topology = of.proved_topology == Some(true);
         self.split_vertices = of.split_vertices;
         self.uncertified_count = of.uncertified_leaves;
         self.uncertified = of.uncertified.iter().map(Uncertified::from).collect();
@@ -237,6 +241,8 @@ impl From<&subdiv::Spot> for Uncertified {
                 subdiv::Reason::Singular => "singular",
                 subdiv::Reason::Tangent => "tangent",
                 subdiv::Reason::Crowded => "crowded",
+                subdiv::Reason::Concurrent => "concurrent",
+                subdiv::Reason::Wall => "wall",
             },
         }
     }

@@ -47,6 +47,8 @@ pub(crate) struct Job {
 pub(crate) enum Precision {
     Tolerance(Tolerance),
     Level(u8),
+    /// When the topology is proved, or cells are this small.
+    Topology(Tolerance),
 }
 
 /// A conversion.
@@ -94,9 +96,10 @@ impl Job {
                 max_degree: args.max_degree,
             },
             clip: args.clip.as_deref().map(clip_box).transpose()?,
-            precision: match args.level {
-                Some(level) => Precision::Level(level),
-                None => Precision::Tolerance(args.tolerance.unwrap_or_default()),
+            precision: match (args.level, args.tolerance.unwrap_or_default()) {
+                (Some(level), _) => Precision::Level(level),
+                (None, finest) if args.topology_only => Precision::Topology(finest),
+                (None, tolerance) => Precision::Tolerance(tolerance),
             },
             max_level: args.max_level,
             criterion: match args.criterion {
@@ -115,6 +118,9 @@ impl Job {
         let rule = match self.precision {
             Precision::Level(level) => subdiv::Rule::Level(level),
             Precision::Tolerance(tolerance) => subdiv::Rule::Tolerance(tolerance.length(diagonal)),
+            Precision::Topology(finest) => subdiv::Rule::Topology {
+                finest: finest.length(diagonal),
+            },
         };
         subdiv::Settings {
             max_level: self.max_level,
@@ -129,8 +135,10 @@ impl Job {
     /// The settings for the report; the tolerance is not known yet if it is relative.
     pub(crate) fn report(&self) -> SettingsReport {
         let (tolerance, level) = match self.precision {
-            Precision::Tolerance(Tolerance::Length(length)) => (Some(length), None),
-            Precision::Tolerance(Tolerance::OfDiagonal(_)) => (None, None),
+            Precision::Tolerance(Tolerance::Length(length))
+            | Precision::Topology(Tolerance::Length(length)) => (Some(length), None),
+            Precision::Tolerance(Tolerance::OfDiagonal(_))
+            | Precision::Topology(Tolerance::OfDiagonal(_)) => (None, None),
             Precision::Level(level) => (None, Some(level)),
         };
         let clip = self.clip.map(|clip| {
@@ -140,6 +148,7 @@ impl Job {
         SettingsReport {
             tolerance,
             level,
+            topology_only: matches!(self.precision, Precision::Topology(_)),
             max_level: self.max_level,
             criterion: match self.criterion {
                 subdiv::Criterion::Rivlin => "rivlin",

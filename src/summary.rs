@@ -44,6 +44,9 @@ fn facts(report: &Report) -> Vec<String> {
             format!("deviation <= {}", rounded_up(distance))
         });
     }
+    if report.proved_topology {
+        facts.push("topology proved".to_owned());
+    }
     if report.uncertified_count > 0 {
         facts.push(format!(
             "{} not certified",

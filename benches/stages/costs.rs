@@ -69,6 +69,7 @@ fn row(rule: Rule, outcome: &Outcome, total_s: f64) -> String {
     let name = match rule {
         Rule::Level(_) => "level",
         Rule::Tolerance(_) => "tolerance",
+        Rule::Topology { .. } => "topology",
     };
     let proving_each = if matches!(rule, Rule::Tolerance(_)) {
         format!("{:.0}", proving * 1e9 / proved as f64)

@@ -8,6 +8,7 @@
 
 mod costs;
 mod samples;
+mod topology;
 
 use divan::Bencher;
 use divan::counter::ItemsCount;
@@ -18,6 +19,7 @@ fn main() {
     let only_named = std::env::args().any(|a| a == "--list" || a == "--test");
     if !only_named {
         costs::print();
+        topology::print();
     }
     // Options on the command line come last and win.
     divan::Divan::default()

@@ -37,6 +37,38 @@ pub(crate) const SAMPLES: &[Sample] = &[
     },
 ];
 
+/// The seven solids that are compared with other programs, too.
+pub(crate) const SEVEN: &[Sample] = &[
+    Sample {
+        name: "S1 sphere",
+        source: include_str!("../../fixtures/solids/S1_sphere.csg"),
+    },
+    Sample {
+        name: "S2 demo",
+        source: include_str!("../../fixtures/solids/S2_demo.csg"),
+    },
+    Sample {
+        name: "S3 torus ∪ sphere",
+        source: include_str!("../../fixtures/solids/S3_torus_sphere.csg"),
+    },
+    Sample {
+        name: "S4 64 spheres",
+        source: include_str!("../../fixtures/solids/S4_64_spheres.csg"),
+    },
+    Sample {
+        name: "S5 ring of 128",
+        source: include_str!("../../fixtures/solids/S5_ring128.csg"),
+    },
+    Sample {
+        name: "S6 plate",
+        source: include_str!("../../fixtures/solids/S6_plate64.csg"),
+    },
+    Sample {
+        name: "S7 heart",
+        source: include_str!("../../fixtures/solids/S7_heart.csg"),
+    },
+];
+
 /// The fixed level: cells of 1/32 of the domain.
 pub(crate) const LEVEL: u8 = 15;
 

@@ -62,6 +62,26 @@ impl DegreeTable {
     }
 }
 
+impl DegreeTable {
+    /// The degree.
+    #[must_use]
+    pub(crate) fn degree(&self) -> usize {
+        self.degree
+    }
+
+    /// Barycentric coordinates of the domain points, in storage order.
+    #[must_use]
+    pub(crate) fn points(&self) -> &[[f64; 4]] {
+        &self.points
+    }
+
+    /// For each coefficient α of a derivative, the positions of α+e_0 … α+e_3.
+    #[must_use]
+    pub(crate) fn raised(&self) -> &[[u32; 4]] {
+        &self.raised
+    }
+}
+
 /// Gradients of the barycentric coordinates, in the domain's own units.
 pub(crate) type BarycentricGradients = [DVec3; 4];
 

@@ -5,11 +5,12 @@ use crate::blossom::RootCoefficients;
 use crate::certify::DegreeTable;
 use crate::error::Error;
 use crate::fragments::Fragments;
-use crate::harvest::extract;
+use crate::harvest::{Cut, Extraction, extract};
 use crate::lattice::MAX_LEVEL;
 use crate::limits::Budget;
-use crate::prove::{Prover, prove};
+use crate::prove::{Proof, Prover, prove};
 use crate::settings::{Observer, Report, Rule, Settings};
+use crate::topology::kindred::{Kin, families};
 use crate::walk::{Sector, Visitor, Walker};
 use csg::Solid;
 use rustc_hash::FxHashSet;
@@ -60,20 +61,30 @@ pub(crate) struct Plan<'a> {
     settings: &'a Settings,
     roots: Vec<RootCoefficients>,
     pub(crate) tables: Vec<DegreeTable>,
-    /// Tolerance in the domain's own units; `None` for a fixed level.
+    /// Tolerance of the metric rule in the domain's own units.
     pub(crate) tolerance: Option<f64>,
+    /// Whether the topological rule decides.
+    pub(crate) topology: bool,
+    /// Whether literals of one primitive differ in material, so that a face may show another one
+    /// where the set itself has no crease.
+    pub(crate) labelled: bool,
+    /// Of each primitive, for the topological rule.
+    pub(crate) families: Vec<Option<Kin>>,
     pub(crate) max_level: u8,
 }
 
 impl<'a> Plan<'a> {
     fn new(solid: &'a Solid, settings: &'a Settings) -> Result<Self, Error> {
         let (tolerance, max_level) = match settings.rule {
-            Rule::Tolerance(t) if t > 0.0 && t.is_finite() => {
-                let tolerance = t / solid.domain.size();
-                let level = settings.max_level.unwrap_or_else(|| level_for(tolerance));
-                (Some(tolerance), level)
+            Rule::Tolerance(length) | Rule::Topology { finest: length } => {
+                if !(length > 0.0 && length.is_finite()) {
+                    return Err(Error::Tolerance(length));
+                }
+                let length = length / solid.domain.size();
+                let level = settings.max_level.unwrap_or_else(|| level_for(length));
+                let metric = matches!(settings.rule, Rule::Tolerance(_));
+                (metric.then_some(length), level)
             }
-            Rule::Tolerance(t) => return Err(Error::Tolerance(t)),
             Rule::Level(level) => (None, level),
         };
         if max_level > MAX_LEVEL {
@@ -90,13 +101,34 @@ impl<'a> Plan<'a> {
             roots,
             tables: (1..=degrees.max(1)).map(DegreeTable::new).collect(),
             tolerance,
+            topology: matches!(settings.rule, Rule::Topology { .. }),
+            families: families(&solid.primitives),
+            labelled: has_several_materials(solid),
             max_level,
         })
+    }
+
+    /// Whether a rule decides where to bisect.
+    pub(crate) fn is_adaptive(&self) -> bool {
+        self.tolerance.is_some() || self.topology
     }
 
     pub(crate) fn walker(&self) -> Walker {
         Walker::new(self.solid, self.settings.criterion)
     }
+}
+
+fn has_several_materials(solid: &Solid) -> bool {
+    let mut material = vec![None; solid.primitives.len()];
+    solid.formula.nodes().iter().any(|node| {
+        let csg::FormulaNode::Literal(literal) = node else {
+            return false;
+        };
+        let known = &mut material[literal.primitive.0 as usize];
+        known
+            .replace(literal.material)
+            .is_some_and(|before| before != literal.material)
+    })
 }
 
 /// The level at which the longest edge of a simplex is no longer than the tolerance.
@@ -127,28 +159,44 @@ fn run(plan: &Plan<'_>, observer: &dyn Observer) -> Result<Outcome, Error> {
 
     let mut head = Prover::new(plan, &budget);
     let sectors = cut_into_sectors(plan, &mut head);
-    let splits = plan
-        .tolerance
-        .map(|_| prove(plan, &budget, &sectors, head, &mut report, observer));
+    let proof = plan
+        .is_adaptive()
+        .then(|| prove(plan, &budget, &sectors, head, &mut report, observer));
     lap(&mut report.seconds[0]);
     budget.check()?;
-    let splits = splits.map(|asked| {
-        let count = asked.len();
-        let mut all = FxHashSet::with_capacity_and_hasher(count * 2, rustc_hash::FxBuildHasher);
-        close(&mut all, asked);
-        report.balance_points = (all.len() - count) as u64;
-        all
-    });
+    let (mut splits, trails) = match proof {
+        Some(Proof { splits, trails }) => {
+            let count = splits.len();
+            let mut all = FxHashSet::with_capacity_and_hasher(count * 2, rustc_hash::FxBuildHasher);
+            close(&mut all, splits);
+            report.balance_points = (all.len() - count) as u64;
+            (Some(all), trails)
+        }
+        None => (None, Vec::new()),
+    };
     lap(&mut report.seconds[1]);
-    let fragments = extract(
-        plan,
-        &budget,
-        &sectors,
-        splits.as_ref(),
-        &mut report,
-        observer,
-    )?;
+    // Leaves that only the closure made are tested on the way, and the rare ones that fail ask
+    // for more bisections; each round goes deeper, the deepest level ends it.
+    let fragments = loop {
+        let cut = Cut {
+            sectors: &sectors,
+            splits: splits.as_ref(),
+            trails: &trails,
+        };
+        match extract(plan, &budget, cut, &mut report, observer)? {
+            Extraction::Done(fragments) => break fragments,
+            Extraction::Doubts(points) => {
+                let all = splits.get_or_insert_default();
+                report.balance_points += points.len() as u64;
+                report.rounds += 1;
+                close(all, points);
+            }
+        }
+    };
     lap(&mut report.seconds[2]);
+    if plan.topology {
+        report.proved_topology = Some(report.uncertified_leaves == 0);
+    }
     Ok(Outcome { fragments, report })
 }
 

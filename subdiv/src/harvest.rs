@@ -8,39 +8,70 @@ use crate::lattice::Point;
 use crate::limits::Budget;
 use crate::mesh::{MeshBuilder, join};
 use crate::predicates::{Sign, vertex_sign};
-use crate::settings::{Observer, Report};
+use crate::settings::{MAX_SPOTS, Observer, Report, Spot};
 use crate::simplex::Simplex;
+use crate::topology::TopologyRule;
+use crate::trail::Trail;
 use crate::walk::{Frame, Sector, Visitor};
 use csg::{Domain, FormulaNode, LocalizeScratch, PrimitiveId, Ternary, localize};
 use rayon::prelude::*;
 use rustc_hash::FxHashSet;
 
-/// The boundary in all sectors; `splits`: the midpoints to bisect at, `None` for a fixed level.
+/// Where to bisect.
+#[derive(Clone, Copy)]
+pub(crate) struct Cut<'a> {
+    /// The subtrees.
+    pub(crate) sectors: &'a [Sector],
+    /// The midpoints to bisect at, `None` for a fixed level.
+    pub(crate) splits: Option<&'a FxHashSet<Point>>,
+    /// What the first traversal decided in each sector.
+    pub(crate) trails: &'a [Trail],
+}
+
+/// What came out.
+pub(crate) enum Extraction {
+    /// The boundary in all sectors.
+    Done(Fragments),
+    /// Leaves made by the closure alone fail the topological rule and ask for these midpoints.
+    Doubts(Vec<Point>),
+}
+
+/// The boundary in all sectors.
 pub(crate) fn extract(
     plan: &Plan<'_>,
     budget: &Budget<'_>,
-    sectors: &[Sector],
-    splits: Option<&FxHashSet<Point>>,
+    cut: Cut<'_>,
     report: &mut Report,
     observer: &dyn Observer,
-) -> Result<Fragments, Error> {
+) -> Result<Extraction, Error> {
+    let Cut {
+        sectors,
+        splits,
+        trails,
+    } = cut;
     observer.stage("extraction", Some(sectors.len() as u64));
     budget.restart();
     let parts: Vec<Result<Harvest, Error>> = sectors
         .par_iter()
+        .enumerate()
         .map_init(
             || {
                 (
                     plan.walker(),
                     Extractor::default(),
                     LocalizeScratch::default(),
+                    TopologyRule::default(),
                 )
             },
-            |(walker, extractor, scratch), sector| {
+            |(walker, extractor, scratch, topology), (at, sector)| {
                 let mut harvester = Harvester {
                     plan,
                     budget,
                     splits,
+                    trail: trails.get(at).filter(|_| plan.topology),
+                    visited: 0,
+                    untested_below: None,
+                    topology,
                     harvest: Harvest::new(&sector.simplex),
                     extractor,
                     scratch,
@@ -57,6 +88,13 @@ pub(crate) fn extract(
         )
         .collect();
     budget.check()?;
+    let mut doubts = Vec::new();
+    for part in &parts {
+        doubts.extend_from_slice(part.as_ref().map_or(&[], |harvest| &harvest.doubts));
+    }
+    if !doubts.is_empty() {
+        return Ok(Extraction::Doubts(doubts));
+    }
     let mut meshes = Vec::with_capacity(parts.len());
     for part in parts {
         let harvest = part?;
@@ -65,10 +103,16 @@ pub(crate) fn extract(
         report.visited += harvest.leaves + harvest.bisections;
         report.deepest_level = report.deepest_level.max(harvest.deepest_level);
         report.split_vertices += harvest.mesh.split_vertices;
+        report.uncertified_leaves += harvest.uncertified_leaves;
+        let room = MAX_SPOTS - report.uncertified.len();
+        report
+            .uncertified
+            .extend(harvest.uncertified.into_iter().take(room));
         meshes.push(harvest.mesh);
     }
     let domain: Domain = plan.solid.domain;
-    Ok(join(meshes, |unit| domain.to_model(unit)))
+    let fragments = join(meshes, |unit| domain.to_model(unit));
+    Ok(Extraction::Done(fragments))
 }
 
 /// What one subtree's second traversal yields.
@@ -78,6 +122,9 @@ struct Harvest {
     leaves: u64,
     bisections: u64,
     deepest_level: u8,
+    doubts: Vec<Point>,
+    uncertified_leaves: u64,
+    uncertified: Vec<Spot>,
 }
 
 impl Harvest {
@@ -87,6 +134,9 @@ impl Harvest {
             leaves: 0,
             bisections: 0,
             deepest_level: 0,
+            doubts: Vec::new(),
+            uncertified_leaves: 0,
+            uncertified: Vec::new(),
         }
     }
 }
@@ -95,6 +145,13 @@ struct Harvester<'a> {
     plan: &'a Plan<'a>,
     budget: &'a Budget<'a>,
     splits: Option<&'a FxHashSet<Point>>,
+    /// The first traversal's decisions, of which `visited` are used up.
+    trail: Option<&'a Trail>,
+    visited: usize,
+    /// Level of the accepted simplex that is bisected all the same: what is below was never
+    /// tested.
+    untested_below: Option<u8>,
+    topology: &'a mut TopologyRule,
     harvest: Harvest,
     extractor: &'a mut Extractor,
     scratch: &'a mut LocalizeScratch,
@@ -144,14 +201,59 @@ impl Harvester<'_> {
     }
 }
 
+impl Harvester<'_> {
+    /// Whether to bisect, and whether the rule has seen the simplex.
+    fn decide(&mut self, simplex: &Simplex) -> (bool, bool) {
+        let Some(set) = self.splits else {
+            return (simplex.level < self.plan.max_level, true);
+        };
+        let Some(trail) = self.trail else {
+            return (set.contains(&simplex.midpoint()), true);
+        };
+        if self
+            .untested_below
+            .is_some_and(|level| simplex.level > level)
+        {
+            return (set.contains(&simplex.midpoint()), false);
+        }
+        self.untested_below = None;
+        let asked = trail.get(self.visited);
+        self.visited += 1;
+        let split = asked || set.contains(&simplex.midpoint());
+        if split && !asked {
+            self.untested_below = Some(simplex.level);
+        }
+        (split, true)
+    }
+
+    /// Applies the topological rule to a leaf that only the closure made; whether it must be
+    /// bisected after all.
+    fn fails(&mut self, simplex: &Simplex, frame: &Frame) -> bool {
+        let Err(reason) = self.topology.test(self.plan, simplex, frame) else {
+            return false;
+        };
+        if simplex.level < self.plan.max_level {
+            self.harvest.doubts.push(simplex.midpoint());
+            return true;
+        }
+        self.harvest.uncertified_leaves += 1;
+        if self.harvest.uncertified.len() < MAX_SPOTS {
+            let spot = Spot::new(&self.plan.solid.domain, simplex, frame, reason);
+            self.harvest.uncertified.push(spot);
+        }
+        false
+    }
+}
+
 impl Visitor for Harvester<'_> {
     fn visit(&mut self, simplex: &Simplex, frame: &Frame) -> bool {
-        let split = match self.splits {
-            Some(set) => set.contains(&simplex.midpoint()),
-            None => simplex.level < self.plan.max_level,
-        };
+        let (split, tested) = self.decide(simplex);
         if split {
             self.harvest.bisections += 1;
+            return true;
+        }
+        if !tested && self.fails(simplex, frame) {
+            // What is below is tested at once, so that one more round is enough for it.
             return true;
         }
         self.harvest.leaves += 1;

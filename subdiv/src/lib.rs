@@ -57,6 +57,8 @@ mod settings;
 mod sheets;
 mod simplex;
 mod snap;
+mod topology;
+mod trail;
 mod vertices;
 mod walk;
 

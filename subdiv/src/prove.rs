@@ -1,4 +1,5 @@
-//! First traversal: where the metric rule (`crate::certify`) wants to bisect.
+//! First traversal: where the metric rule (`crate::certify`) or the topological one
+//! (`crate::topology`) wants to bisect.
 
 use crate::certify::{
     BarycentricGradients, Sheet, barycentric_gradients, creases_within, sheet, slope_along,
@@ -9,15 +10,26 @@ use crate::lattice::Point;
 use crate::limits::Budget;
 use crate::settings::{MAX_SPOTS, Observer, Reason, Report, Spot};
 use crate::simplex::Simplex;
+use crate::topology::TopologyRule;
+use crate::trail::Trail;
 use crate::walk::{Frame, Sector, Visitor};
-use csg::{FormulaNode, PrimitiveId, Sense};
+use csg::{Domain, FormulaNode, PrimitiveId, Sense};
 use glam::DVec3;
 use rayon::prelude::*;
 
 /// Most primitives in a leaf that the metric rule accepts.
 const CROWD: usize = 8;
 
-/// First traversal: the midpoints at which the metric rule wants to bisect, each once.
+/// What the first traversal found.
+#[derive(Debug)]
+pub(crate) struct Proof {
+    /// The midpoints at which the rule wants to bisect, each once.
+    pub(crate) splits: Vec<Point>,
+    /// The decisions in each sector.
+    pub(crate) trails: Vec<Trail>,
+}
+
+/// First traversal: where the rule wants to bisect.
 pub(crate) fn prove(
     plan: &Plan<'_>,
     budget: &Budget<'_>,
@@ -25,7 +37,7 @@ pub(crate) fn prove(
     head: Prover<'_>,
     report: &mut Report,
     observer: &dyn Observer,
-) -> Vec<Point> {
+) -> Proof {
     observer.stage("proving", Some(sectors.len() as u64));
     let parts: Vec<Findings> = sectors
         .par_iter()
@@ -43,10 +55,12 @@ pub(crate) fn prove(
         )
         .collect();
     let mut splits = head.findings.splits;
+    let mut trails = Vec::with_capacity(parts.len());
     let mut largest = 0.0f64;
     report.visited += head.findings.visited;
     for part in parts {
         splits.extend(part.splits);
+        trails.push(part.trail);
         largest = largest.max(part.largest_deviation);
         report.visited += part.visited;
         report.uncertified_leaves += part.uncertified_leaves;
@@ -57,14 +71,15 @@ pub(crate) fn prove(
     }
     splits.par_sort_unstable();
     splits.dedup();
-    report.largest_deviation = Some(largest * plan.solid.domain.size());
-    splits
+    report.largest_deviation = plan.tolerance.map(|_| largest * plan.solid.domain.size());
+    Proof { splits, trails }
 }
 
 /// What one subtree's first traversal found.
 #[derive(Debug, Default)]
 struct Findings {
     splits: Vec<Point>,
+    trail: Trail,
     visited: u64,
     largest_deviation: f64,
     uncertified_leaves: u64,
@@ -78,6 +93,7 @@ pub(crate) struct Prover<'a> {
     findings: Findings,
     leaves: u64,
     sheets: Vec<Sheet>,
+    topology: TopologyRule,
 }
 
 impl<'a> Prover<'a> {
@@ -88,6 +104,7 @@ impl<'a> Prover<'a> {
             findings: Findings::default(),
             leaves: 0,
             sheets: Vec::new(),
+            topology: TopologyRule::default(),
         }
     }
 
@@ -95,8 +112,21 @@ impl<'a> Prover<'a> {
         self.budget.add_cells(std::mem::take(&mut self.leaves));
     }
 
+    /// The rule that was asked for; the largest deviation where the metric one accepts.
+    fn test(&mut self, simplex: &Simplex, frame: &Frame) -> Result<f64, Reason> {
+        match self.plan.tolerance {
+            Some(tolerance) => self.test_deviation(simplex, frame, tolerance),
+            None => self.topology.test(self.plan, simplex, frame).map(|()| 0.0),
+        }
+    }
+
     /// The metric rule; the largest deviation where it accepts.
-    fn test(&mut self, simplex: &Simplex, frame: &Frame, tolerance: f64) -> Result<f64, Reason> {
+    fn test_deviation(
+        &mut self,
+        simplex: &Simplex,
+        frame: &Frame,
+        tolerance: f64,
+    ) -> Result<f64, Reason> {
         if frame.active.len() > CROWD {
             return Err(Reason::Crowded);
         }
@@ -154,32 +184,9 @@ impl<'a> Prover<'a> {
         Some(largest)
     }
 
-    fn list(&mut self, simplex: &Simplex, frame: &Frame, reason: Reason) {
-        self.findings.uncertified_leaves += 1;
-        if self.findings.uncertified.len() < MAX_SPOTS {
-            let domain = &self.plan.solid.domain;
-            let corners = simplex.vertices.map(|v| domain.to_model(v.position()));
-            self.findings.uncertified.push(Spot {
-                position: corners.iter().copied().sum::<glam::DVec3>() * 0.25,
-                size: corners[0].distance(corners[3]),
-                primitives: frame
-                    .active
-                    .iter()
-                    .map(|a| PrimitiveId(a.primitive))
-                    .collect(),
-                reason,
-            });
-        }
-    }
-}
-
-impl Visitor for Prover<'_> {
-    fn visit(&mut self, simplex: &Simplex, frame: &Frame) -> bool {
-        self.findings.visited += 1;
-        let Some(tolerance) = self.plan.tolerance else {
-            return simplex.level < self.plan.max_level;
-        };
-        match self.test(simplex, frame, tolerance) {
+    /// Whether to bisect.
+    fn decide(&mut self, simplex: &Simplex, frame: &Frame) -> bool {
+        match self.test(simplex, frame) {
             Ok(deviation) => {
                 self.findings.largest_deviation = self.findings.largest_deviation.max(deviation);
             }
@@ -187,13 +194,45 @@ impl Visitor for Prover<'_> {
                 self.findings.splits.push(simplex.midpoint());
                 return true;
             }
-            Err(reason) => self.list(simplex, frame, reason),
+            Err(reason) => {
+                self.findings.uncertified_leaves += 1;
+                if self.findings.uncertified.len() < MAX_SPOTS {
+                    let spot = Spot::new(&self.plan.solid.domain, simplex, frame, reason);
+                    self.findings.uncertified.push(spot);
+                }
+            }
         }
         self.leaves += 1;
         if self.leaves == 1024 {
             self.flush();
         }
         false
+    }
+}
+
+impl Spot {
+    /// A leaf, with why nothing is proved there.
+    pub(crate) fn new(domain: &Domain, simplex: &Simplex, frame: &Frame, reason: Reason) -> Self {
+        let corners = simplex.vertices.map(|v| domain.to_model(v.position()));
+        let primitives = frame.active.iter().map(|a| PrimitiveId(a.primitive));
+        Self {
+            position: corners.iter().copied().sum::<DVec3>() * 0.25,
+            size: corners[0].distance(corners[3]),
+            primitives: primitives.collect(),
+            reason,
+        }
+    }
+}
+
+impl Visitor for Prover<'_> {
+    fn visit(&mut self, simplex: &Simplex, frame: &Frame) -> bool {
+        self.findings.visited += 1;
+        if !self.plan.is_adaptive() {
+            return simplex.level < self.plan.max_level;
+        }
+        let bisect = self.decide(simplex, frame);
+        self.findings.trail.push(bisect);
+        bisect
     }
 
     fn stopped(&self) -> bool {

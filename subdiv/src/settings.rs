@@ -9,6 +9,13 @@ use glam::DVec3;
 pub enum Rule {
     /// When the proved deviation of every affine interpolant is at most this, in model units.
     Tolerance(f64),
+    /// When the interpolants are proved to have the solid's topology: components, holes, faces,
+    /// creases and corners, whatever the deviation (`docs/topology.md`). Cells no larger than
+    /// `finest`, in model units, are not bisected any more but listed.
+    Topology {
+        /// The longest edge of the finest cells.
+        finest: f64,
+    },
     /// At this bisection level everywhere on the boundary (three levels halve the cells).
     Level(u8),
 }
@@ -18,8 +25,8 @@ pub enum Rule {
 pub struct Settings {
     /// When to stop.
     pub rule: Rule,
-    /// Deepest level that the tolerance may lead to; `None`: the one at which cells are as small
-    /// as the tolerance.
+    /// Deepest level that a rule may lead to; `None`: the one at which cells are as small as the
+    /// tolerance, or the finest cell.
     pub max_level: Option<u8>,
     /// How polynomials are bounded.
     pub criterion: Criterion,
@@ -55,9 +62,13 @@ pub enum Reason {
     Tangent,
     /// More surfaces meet than the certificate handles.
     Crowded,
+    /// Four surfaces pass through one point, or nearly.
+    Concurrent,
+    /// The solid comes close to the domain's walls.
+    Wall,
 }
 
-/// A leaf at the deepest level whose deviation is not proved.
+/// A leaf at the deepest level for which the rule proves nothing.
 #[derive(Clone, PartialEq, Debug)]
 pub struct Spot {
     /// Its middle, in model units.
@@ -86,6 +97,10 @@ pub struct Report {
     /// Largest deviation proved for a single surface in a certified leaf, in model units; `None`
     /// when no leaf was tested (fixed level).
     pub largest_deviation: Option<f64>,
+    /// Whether the topology is proved everywhere; `None` when another rule decided.
+    pub proved_topology: Option<bool>,
+    /// Extractions that were repeated since a leaf of the closure failed the rule.
+    pub rounds: u64,
     /// Number of leaves that are not certified.
     pub uncertified_leaves: u64,
     /// The first of them, at most [`MAX_SPOTS`].

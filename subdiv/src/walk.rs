@@ -23,7 +23,7 @@ pub(crate) struct Active {
     /// Bound on that polynomial's error against the user's model; the same everywhere.
     pub model_error: f64,
     /// Its largest absolute coefficient.
-    largest: f64,
+    pub largest: f64,
 }
 
 impl Active {

@@ -1,0 +1,199 @@
+//! The topological rule: against exact topology, against the metric rule, and against itself in
+//! other positions of the domain.
+
+#![allow(clippy::unwrap_used, reason = "a panic is how a test fails")]
+
+mod stages;
+mod trees;
+
+use csg::{DomainFit, Model, Solid};
+use glam::DVec3;
+use rayon::prelude::*;
+use stages::{Converted, convert_solid, read};
+use std::collections::BTreeMap;
+use subdiv::{Rule, Settings};
+use trees::{Setting, number, trees};
+
+/// What conversions of one solid must agree on.
+#[derive(Clone, PartialEq, Eq, Debug)]
+struct Structure {
+    /// Genus of each shell, ascending.
+    genera: Vec<u64>,
+    /// Number of faces on each primitive.
+    patches: BTreeMap<u32, usize>,
+    edges: usize,
+    vertices: usize,
+}
+
+impl Structure {
+    fn of(converted: &Converted) -> Self {
+        let mut genera: Vec<u64> = converted.shells.shells.iter().map(|s| s.genus).collect();
+        genera.sort_unstable();
+        let mut patches = BTreeMap::new();
+        for face in &converted.groups.faces {
+            *patches.entry(face.primitive.0).or_default() += 1;
+        }
+        Self {
+            genera,
+            patches,
+            edges: converted.groups.edges.len(),
+            vertices: converted.groups.vertices.len(),
+        }
+    }
+}
+
+/// Settings for one thread.
+fn settings(rule: Rule) -> Settings {
+    Settings {
+        threads: Some(1),
+        ..Settings::new(rule)
+    }
+}
+
+/// By the topological rule; `finest`, as `tolerance` below, is a fraction of the diagonal.
+fn topology(solid: Solid, finest: f64) -> Converted {
+    let finest = finest * solid.extent.diagonal();
+    convert_solid(solid, &settings(Rule::Topology { finest }))
+}
+
+fn metric(solid: Solid, tolerance: f64) -> Converted {
+    let tolerance = tolerance * solid.extent.diagonal();
+    convert_solid(solid, &settings(Rule::Tolerance(tolerance)))
+}
+
+fn fixture(name: &str) -> Solid {
+    let source = std::fs::read_to_string(format!("fixtures/solids/{name}.csg")).unwrap();
+    Solid::build(&read(&source), None).unwrap()
+}
+
+/// Genera by hand: three crossing bores through a cube make a body of genus 5; the ring of balls
+/// is a torus; each hole of the plate is a handle.
+#[test]
+fn known_solids_are_proved() {
+    let expected: [(&str, Vec<u64>); 6] = [
+        ("S1_sphere", vec![0]),
+        ("S2_demo", vec![5]),
+        ("S3_torus_sphere", vec![0, 1]),
+        ("S4_64_spheres", vec![0; 64]),
+        ("S5_ring128", vec![1]),
+        ("S6_plate64", vec![64]),
+    ];
+    for (name, genera) in expected {
+        let coarse = topology(fixture(name), 1e-6);
+        assert_eq!(coarse.report.proved_topology, Some(true), "{name}");
+        let structure = Structure::of(&coarse);
+        assert_eq!(structure.genera, genera, "{name}");
+        let fine = metric(fixture(name), 2e-3);
+        assert_eq!(structure, Structure::of(&fine), "{name}");
+        let (few, many) = (coarse.report.leaves, fine.report.leaves);
+        println!("{name}: {few} leaves, by the metric rule {many}");
+    }
+}
+
+/// The domain's size and position must not matter: four of them.
+fn fits() -> [DomainFit; 4] {
+    let fit = |margin, x, y, z| DomainFit::new(margin, DVec3::new(x, y, z)).unwrap();
+    [
+        DomainFit::default(),
+        fit(1.193_17, -0.041_73, 0.031_97, 0.050_31),
+        fit(1.414_91, 0.073_97, 0.101_33, -0.057_19),
+        fit(1.733_77, -0.130_71, -0.089_33, 0.171_39),
+    ]
+}
+
+/// What was found in several conversions of one solid.
+#[derive(Default)]
+struct Verdict {
+    /// The topology is proved in all positions.
+    certified: bool,
+    /// In all positions together.
+    leaves: u64,
+    /// The tolerance at which the metric rule has the same structure, if it certifies all leaves.
+    metric: Option<f64>,
+}
+
+impl Verdict {
+    fn summary(all: &[Self]) -> String {
+        let proved = all.iter().filter(|v| v.certified).count();
+        let leaves: u64 = all.iter().map(|v| v.leaves).sum();
+        let at = TOLERANCES.map(|t| all.iter().filter(|v| v.metric == Some(t)).count());
+        format!(
+            "{} solids: {proved} proved in all positions, {leaves} leaves; the metric rule agrees \
+             at {TOLERANCES:?} of the diagonal for {at:?} solids",
+            all.len()
+        )
+    }
+}
+
+/// Fractions of the diagonal for the metric rule. It proves distances only: faces and parts smaller
+/// than the tolerance may come out wrong, so where it differs, a finer one must agree.
+const TOLERANCES: [f64; 4] = [1e-2, 2e-3, 4e-4, 8e-5];
+
+/// Converts a model in all positions of the domain, and by the metric rule.
+fn compare(model: &Model, name: &dyn Fn() -> String) -> Verdict {
+    let solids = fits().map(|fit| {
+        Solid::build_fitted(model, None, fit).unwrap_or_else(|error| panic!("{}: {error}", name()))
+    });
+    let mut verdict = Verdict {
+        certified: true,
+        ..Verdict::default()
+    };
+    if solids[0].primitives.is_empty() {
+        return verdict;
+    }
+    let mut known: Option<Structure> = None;
+    for (at, solid) in solids.iter().enumerate() {
+        let coarse = topology(solid.clone(), 1e-3);
+        verdict.leaves += coarse.report.leaves;
+        if coarse.report.proved_topology != Some(true) {
+            verdict.certified = false;
+            continue;
+        }
+        let structure = Structure::of(&coarse);
+        if let Some(known) = &known {
+            assert_eq!(&structure, known, "position {at} of {}", name());
+        }
+        known = Some(structure);
+    }
+    let Some(known) = known else {
+        return verdict;
+    };
+    let mut seen = Vec::new();
+    for tolerance in TOLERANCES {
+        let fine = metric(solids[0].clone(), tolerance);
+        if fine.report.uncertified_leaves > 0 {
+            continue;
+        }
+        let structure = Structure::of(&fine);
+        if structure == known {
+            verdict.metric = Some(tolerance);
+            return verdict;
+        }
+        seen.push(structure);
+    }
+    if seen.is_empty() {
+        return verdict;
+    }
+    panic!("proved: {known:?}\nmetric: {seen:?}\n{}", name());
+}
+
+fn compare_trees(count: u64, seed: u64, setting: Setting) -> Vec<Verdict> {
+    trees(count, seed, setting)
+        .par_iter()
+        .enumerate()
+        .map(|(at, (tree, model))| compare(model, &|| format!("tree {at}: {tree:?}")))
+        .collect()
+}
+
+/// 200 trees in general position in four positions of the domain each.
+///
+/// `CSG2BREP_TREES=2000 CSG2BREP_SEED=1 cargo test --release --test topology` runs others.
+#[test]
+fn random_trees_agree_in_every_position() {
+    let (count, seed) = (number("CSG2BREP_TREES", 200), number("CSG2BREP_SEED", 0));
+    let verdicts = compare_trees(count, seed, Setting::General);
+    println!("trees, seed {seed}: {}", Verdict::summary(&verdicts));
+    assert!(verdicts.iter().all(|v| v.certified));
+    let compared = verdicts.iter().filter(|v| v.metric.is_some()).count();
+    assert!(compared as u64 * 10 > count * 8, "{compared}");
+}
