@@ -20,6 +20,9 @@ pub(crate) struct Active {
     pub offset: u32,
     /// Bound on their rounding, against the polynomial that the subdivision was given.
     pub rounding: f64,
+    /// The part of it that the root's coefficients had; it is that of one polynomial throughout
+    /// the root, so that its gradient does not grow in smaller simplices.
+    pub root_rounding: f64,
     /// Bound on that polynomial's error against the user's model; the same everywhere.
     pub model_error: f64,
     /// Its largest absolute coefficient.
@@ -128,6 +131,7 @@ impl Walker {
                     degree: root.degree as u32,
                     offset: frame.coefficients.len() as u32,
                     rounding: root.rounding,
+                    root_rounding: root.rounding,
                     model_error: root.model_error,
                     largest: 0.0,
                 };

@@ -19,10 +19,7 @@ pub(crate) enum Setting {
 
 /// This many trees with their models, the same for the same seed.
 pub(crate) fn trees(count: u64, seed: u64, setting: Setting) -> Vec<(Tree, Model)> {
-    let mut bytes = [0; 32];
-    bytes[..8].copy_from_slice(&seed.to_le_bytes());
-    let rng = TestRng::from_seed(RngAlgorithm::ChaCha, &bytes);
-    let mut runner = TestRunner::new_with_rng(ProptestConfig::default(), rng);
+    let mut runner = runner(seed);
     (0..count)
         .map(|_| {
             let tree = tree(setting).new_tree(&mut runner).unwrap().current();
@@ -31,6 +28,14 @@ pub(crate) fn trees(count: u64, seed: u64, setting: Setting) -> Vec<(Tree, Model
             (tree, model.finish(root))
         })
         .collect()
+}
+
+/// Makes the same choices for the same seed.
+pub(crate) fn runner(seed: u64) -> TestRunner {
+    let mut bytes = [0; 32];
+    bytes[..8].copy_from_slice(&seed.to_le_bytes());
+    let rng = TestRng::from_seed(RngAlgorithm::ChaCha, &bytes);
+    TestRunner::new_with_rng(ProptestConfig::default(), rng)
 }
 
 /// The number in an environment variable.

@@ -3,11 +3,17 @@
 //!
 //! Rounding. Let u = 2⁻⁵³, ε the bound on the error of the coefficients c, and M = max |c|. Every
 //! test here holds for *all* coefficients within ε of the stored ones, so both for the true
-//! polynomial and for the stored one. The gradients of the barycentric coordinates of a Kuhn
-//! simplex are small integers times powers of two, hence exact; a component of a control gradient
-//! is a sum of four products with them, off by at most Γ·(ε + 8uM) with Γ the largest sum of
-//! magnitudes in a component: four roundings relative to ΓM, and as many to spare. `noise` is
-//! ε + 16uM and bounds linear combinations (`crate::topology::combination`), too.
+//! polynomial and for the stored one. `noise` is ε + 16uM and bounds linear combinations
+//! (`crate::topology::combination`).
+//!
+//! The gradients of the barycentric coordinates of a Kuhn simplex are small integers times powers of
+//! two, hence exact; a component of a control gradient (without the degree as factor) is a sum of
+//! four products with them. Let Γ be the largest sum of magnitudes in a component, which grows as
+//! the simplex shrinks. Only what halving rounded, ε_h, is multiplied by it. What the root's
+//! coefficients were off by, ε_r, is the restriction of one polynomial on the root, where Γ is 2;
+//! and the model's error ε_m bounds the coefficients of the error's derivatives, divided by the
+//! degree, as it bounds those of the error. So a component is off by at most
+//! Γ·(ε_h + 8uM) + 2ε_r + ε_m: four roundings relative to ΓM, and as many to spare.
 
 use crate::certify::{BarycentricGradients, DegreeTable, barycentric_gradients};
 use crate::rounding::UNIT_ROUNDOFF;
@@ -27,6 +33,10 @@ pub(crate) struct Surface<'a> {
     pub(crate) values: [f64; 4],
     /// ε + 16uM.
     pub(crate) noise: f64,
+    /// Bound on the rounding of a component of ∇ℓ: 8ΓuM.
+    slope_noise: f64,
+    /// Bound on the error of a component of a control gradient.
+    gradient_noise: f64,
     /// ∇ℓ of its affine interpolant.
     pub(crate) slope: DVec3,
     /// |∇ℓ|, or 1 where that vanishes.
@@ -79,19 +89,19 @@ impl<'a> Surface<'a> {
         frame: &LeafFrame,
         kin: Option<Kin>,
     ) -> Self {
-        let noise = active.error() + 16.0 * UNIT_ROUNDOFF * active.largest;
+        let halving = active.rounding - active.root_rounding;
+        let slope_noise = frame.magnification * (8.0 * UNIT_ROUNDOFF * active.largest);
+        let inherited = 2.0 * active.root_rounding + active.model_error;
         Self {
+            noise: active.error() + 16.0 * UNIT_ROUNDOFF * active.largest,
+            slope_noise,
+            gradient_noise: frame.magnification * halving + slope_noise + inherited,
             kin,
-            ..Self::with_noise(table, coefficients, noise, frame)
+            ..Self::without_noise(table, coefficients, frame)
         }
     }
 
-    fn with_noise(
-        table: &'a DegreeTable,
-        coefficients: &'a [f64],
-        noise: f64,
-        frame: &LeafFrame,
-    ) -> Self {
+    fn without_noise(table: &'a DegreeTable, coefficients: &'a [f64], frame: &LeafFrame) -> Self {
         let values = crate::bernstein::vertex_values(table.degree(), coefficients);
         let slope: DVec3 = (0..4).map(|v| frame.gradients[v] * values[v]).sum();
         let length = slope.length();
@@ -99,7 +109,9 @@ impl<'a> Surface<'a> {
             table,
             coefficients,
             values,
-            noise,
+            noise: 0.0,
+            slope_noise: 0.0,
+            gradient_noise: 0.0,
             slope,
             steepness: if length > 0.0 { length } else { 1.0 },
             kin: None,
@@ -115,9 +127,16 @@ impl<'a> Surface<'a> {
         for (at, slot) in difference.iter_mut().enumerate() {
             *slot = a * self.coefficients[at] - b * other.coefficients[at];
         }
-        // Three roundings relative to the terms, which `noise` covers with those that follow.
-        let noise = a.abs() * self.noise + b.abs() * other.noise;
-        Surface::with_noise(self.table, &difference, noise, frame).find_cone(frame)
+        // Three roundings relative to the terms, for which twice the slopes' noise has room with
+        // those that follow.
+        let sum = |of: fn(&Self) -> f64| a.abs() * of(self) + b.abs() * of(other);
+        let slope_noise = 2.0 * sum(|surface| surface.slope_noise);
+        let surface = Surface {
+            slope_noise,
+            gradient_noise: sum(|surface| surface.gradient_noise) + slope_noise,
+            ..Surface::without_noise(self.table, &difference, frame)
+        };
+        surface.find_cone(frame)
     }
 
     /// The cone of its gradients around ∇ℓ, if no gradient is 90° or more away.
@@ -125,8 +144,9 @@ impl<'a> Surface<'a> {
     pub(crate) fn find_cone(&self, frame: &LeafFrame) -> Option<Cone> {
         // A vector is off by √3 times its components' bound. Products with the unit axis and the
         // norms add at most 10u|G| ≤ 10u·√3·ΓM, less than 2.2 times the bound on a component.
-        let slack = 4.0 * frame.magnification * self.noise;
-        let wobble = slack / (self.steepness - slack);
+        let slack = 4.0 * self.gradient_noise;
+        let slope_slack = 4.0 * self.slope_noise;
+        let wobble = slope_slack / (self.steepness - slope_slack);
         // Up to this angle tan 3x < 4x.
         if !(self.slope != DVec3::ZERO && (0.0..0.05).contains(&wobble)) {
             return None;

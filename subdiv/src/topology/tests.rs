@@ -3,9 +3,11 @@
 
 use super::*;
 use crate::bernstein::count;
+use crate::blossom::RootCoefficients;
 use crate::certify::{DegreeTable, barycentric_gradients};
 use crate::walk::Active;
 use combination::{Combination, excluded};
+use csg::{Polynomial, Primitive};
 use num_rational::BigRational;
 use proptest::prelude::*;
 
@@ -51,6 +53,7 @@ impl Sample {
             degree: self.degree as u32,
             offset: 0,
             rounding: self.error,
+            root_rounding: 0.0,
             model_error: 0.0,
             largest: self.coefficients.iter().fold(0.0, |m, c| c.abs().max(m)),
         }
@@ -151,6 +154,38 @@ fn direction(v: &Vector) -> glam::DVec3 {
     glam::DVec3::from_array([0, 1, 2].map(|x| v[x].to_f64().unwrap())).normalize()
 }
 
+/// The coordinates of each r in the dual basis of the u are dominated by its own.
+fn assert_dominated(u: [glam::DVec3; 3], r: [glam::DVec3; 3]) -> Result<(), TestCaseError> {
+    let whole = determinant(u[0], u[1], u[2]);
+    for i in 0..3 {
+        let replaced = [0, 1, 2].map(|m| {
+            let mut columns = u;
+            columns[m] = r[i];
+            determinant(columns[0], columns[1], columns[2]) / whole
+        });
+        let others: f64 = (0..3).filter(|m| *m != i).map(|m| replaced[m].abs()).sum();
+        prop_assert!(
+            replaced[i] > others - 1e-9 * replaced[i].abs(),
+            "{replaced:?}"
+        );
+    }
+    Ok(())
+}
+
+fn unit() -> impl Strategy<Value = glam::DVec3> {
+    proptest::array::uniform3(-1.0..1.0f64).prop_filter_map("no direction", |v| {
+        glam::DVec3::from_array(v).try_normalize()
+    })
+}
+
+fn cone(axis: glam::DVec3, half_rad: f64) -> Cone {
+    Cone {
+        axis,
+        tangent: half_rad.tan(),
+        wobble: 0.0,
+    }
+}
+
 proptest! {
     /// Barycentric gradients of lattice simplices carry no rounding at all.
     #[test]
@@ -228,17 +263,43 @@ proptest! {
                 let all = gradients(&three[m], &simplex);
                 direction(&all[pick[m] % all.len()])
             });
-            let whole = determinant(u[0], u[1], u[2]);
-            for i in 0..3 {
-                let r = direction(&interpolant(&surfaces[i], &simplex));
-                let replaced = [0, 1, 2].map(|m| {
-                    let mut columns = u;
-                    columns[m] = r;
-                    determinant(columns[0], columns[1], columns[2]) / whole
-                });
-                let others: f64 = (0..3).filter(|m| *m != i).map(|m| replaced[m].abs()).sum();
-                prop_assert!(replaced[i] > others - 1e-9 * replaced[i].abs(), "{replaced:?}");
-            }
+            let r = [0, 1, 2].map(|m| direction(&interpolant(&surfaces[m], &simplex)));
+            assert_dominated(u, r)?;
+        }
+    }
+
+    /// Cones share a line exactly where their half-angles add up to the angle of their axes.
+    #[test]
+    fn transversality_is_that_of_angles(
+        axes in proptest::array::uniform2(unit()), halves_rad in proptest::array::uniform2(0.0..0.8f64),
+    ) {
+        let cones = [0, 1].map(|m| cone(axes[m], halves_rad[m]));
+        let angle = axes[0].dot(axes[1]).abs().min(1.0).acos();
+        let excess = halves_rad[0] + halves_rad[1] - angle;
+        prop_assume!(excess.abs() > 1e-7);
+        prop_assert_eq!(pairs::transversal(&cones[0], &cones[1]), excess < 0.0);
+    }
+
+    /// Vectors on the cones' rims, in the directions that hurt most among several.
+    #[test]
+    fn dominance_holds_on_the_rims(
+        axes in proptest::array::uniform3(unit()), sizes in proptest::array::uniform3(prop_oneof![Just(0.0), 0.0..0.6f64]),
+        turns in proptest::collection::vec(0.0..std::f64::consts::TAU, 60),
+    ) {
+        // Scaled so that about half of the triples pass.
+        let whole = determinant(axes[0], axes[1], axes[2]).abs();
+        let halves = sizes.map(|size| size * whole);
+        let cones = [0, 1, 2].map(|m| cone(axes[m], halves[m]));
+        if !triples::independent(&cones) {
+            return Ok(());
+        }
+        for turn in turns.chunks_exact(3) {
+            let u = [0, 1, 2].map(|m| {
+                let across = axes[m].any_orthonormal_vector();
+                let around = axes[m].cross(across) * turn[m].sin() + across * turn[m].cos();
+                axes[m] * halves[m].cos() + around * halves[m].sin()
+            });
+            assert_dominated(u, axes)?;
         }
     }
 
@@ -294,6 +355,68 @@ proptest! {
         let frame = LeafFrame::new(&leaf(0, &[]));
         let surfaces = [0, 1, 2, 3].map(|m| surface(&all[m], &table, &frame));
         prop_assert!(quadruples::apart(&surfaces, [0, 1, 2, 3]).is_some());
+    }
+}
+
+/// Value of a quadratic form's gradient at a point, in exact numbers, from its power coefficients.
+fn true_gradient(power: &[BigRational], at: &Vector) -> Vector {
+    let c = |i: usize, j: usize, k: usize| power[Polynomial::index(2, i, j, k)].clone();
+    let two = exact(2.0);
+    let [x, y, z] = at;
+    [
+        c(2, 0, 0) * &two * x + c(1, 1, 0) * y + c(1, 0, 1) * z + c(1, 0, 0),
+        c(1, 1, 0) * x + c(0, 2, 0) * &two * y + c(0, 1, 1) * z + c(0, 1, 0),
+        c(1, 0, 1) * x + c(0, 1, 1) * y + c(0, 0, 2) * &two * z + c(0, 0, 1),
+    ]
+}
+
+proptest! {
+    /// Far below the root, where errors of values are large against the cells: the gradients of the
+    /// user's quadric, whose coefficients are off by as much as the model allows, are in the cone.
+    #[test]
+    fn deep_cones_hold_the_models_gradients(
+        root in 0usize..6, turns in proptest::collection::vec(any::<bool>(), 57),
+        power in proptest::collection::vec((-1.0..1.0f64, any::<bool>()), 10),
+        error in prop_oneof![Just(0.0), Just(1e-16), Just(1e-12), Just(1e-7), Just(1e-3)],
+        flatten in prop_oneof![Just(1.0), Just(1e-5), Just(1e-9), Just(1e-13)],
+    ) {
+        // A steep plane would hide all errors.
+        let mut coefficients: Vec<f64> = power.iter().map(|(c, _)| c * flatten).collect();
+        coefficients[9] = power[9].0;
+        let polynomial = Polynomial::new(2, coefficients.clone()).unwrap();
+        let shifted: Vec<BigRational> = coefficients.iter().zip(&power)
+            .map(|(c, (_, up))| exact(*c) + exact(if *up { error } else { -error }))
+            .collect();
+        let roots = RootCoefficients::new(&Primitive { polynomial, coefficient_error: error });
+        let table = DegreeTable::new(2);
+        let mut simplex = Simplex::roots()[root];
+        let mut coefficients = roots.roots[root].clone();
+        let mut active = Active {
+            primitive: 0,
+            degree: 2,
+            offset: 0,
+            rounding: roots.rounding,
+            root_rounding: roots.rounding,
+            model_error: roots.model_error,
+            largest: 0.0,
+        };
+        for far in turns {
+            active.largest = coefficients.iter().fold(0.0, |m, c| c.abs().max(m));
+            let frame = LeafFrame::new(&simplex);
+            let surface = Surface::new(&table, &coefficients, &active, &frame, None);
+            if let Some(cone) = surface.find_cone(&frame) {
+                for corner in simplex.vertices {
+                    let gradient = true_gradient(&shifted, &vector(corner.position()));
+                    prop_assert!(within(&gradient, cone.axis, cone.tangent), "level {}", simplex.level);
+                }
+            }
+            active.rounding = crate::rounding::of_halving(2, active.rounding, active.largest);
+            let mut children = [coefficients.clone(), coefficients.clone()];
+            let [near, other] = &mut children;
+            crate::halving::halve(2, simplex.kind(), &coefficients, near, other);
+            coefficients.clone_from(&children[usize::from(far)]);
+            simplex = simplex.children()[usize::from(far)];
+        }
     }
 }
 

@@ -3,11 +3,16 @@
 
 #![allow(clippy::unwrap_used, reason = "a panic is how a test fails")]
 
+mod agreement;
+mod lost;
+mod polynomials;
+#[path = "../stages/mod.rs"]
 mod stages;
+#[path = "../trees/mod.rs"]
 mod trees;
 
-use csg::{DomainFit, Model, Solid};
-use glam::DVec3;
+use agreement::{Verdict, compare};
+use csg::Solid;
 use rayon::prelude::*;
 use stages::{Converted, convert_solid, read};
 use std::collections::BTreeMap;
@@ -90,93 +95,6 @@ fn known_solids_are_proved() {
     }
 }
 
-/// The domain's size and position must not matter: four of them.
-fn fits() -> [DomainFit; 4] {
-    let fit = |margin, x, y, z| DomainFit::new(margin, DVec3::new(x, y, z)).unwrap();
-    [
-        DomainFit::default(),
-        fit(1.193_17, -0.041_73, 0.031_97, 0.050_31),
-        fit(1.414_91, 0.073_97, 0.101_33, -0.057_19),
-        fit(1.733_77, -0.130_71, -0.089_33, 0.171_39),
-    ]
-}
-
-/// What was found in several conversions of one solid.
-#[derive(Default)]
-struct Verdict {
-    /// The topology is proved in all positions.
-    certified: bool,
-    /// In all positions together.
-    leaves: u64,
-    /// The tolerance at which the metric rule has the same structure, if it certifies all leaves.
-    metric: Option<f64>,
-}
-
-impl Verdict {
-    fn summary(all: &[Self]) -> String {
-        let proved = all.iter().filter(|v| v.certified).count();
-        let leaves: u64 = all.iter().map(|v| v.leaves).sum();
-        let at = TOLERANCES.map(|t| all.iter().filter(|v| v.metric == Some(t)).count());
-        format!(
-            "{} solids: {proved} proved in all positions, {leaves} leaves; the metric rule agrees \
-             at {TOLERANCES:?} of the diagonal for {at:?} solids",
-            all.len()
-        )
-    }
-}
-
-/// Fractions of the diagonal for the metric rule. It proves distances only: faces and parts smaller
-/// than the tolerance may come out wrong, so where it differs, a finer one must agree.
-const TOLERANCES: [f64; 4] = [1e-2, 2e-3, 4e-4, 8e-5];
-
-/// Converts a model in all positions of the domain, and by the metric rule.
-fn compare(model: &Model, name: &dyn Fn() -> String) -> Verdict {
-    let solids = fits().map(|fit| {
-        Solid::build_fitted(model, None, fit).unwrap_or_else(|error| panic!("{}: {error}", name()))
-    });
-    let mut verdict = Verdict {
-        certified: true,
-        ..Verdict::default()
-    };
-    if solids[0].primitives.is_empty() {
-        return verdict;
-    }
-    let mut known: Option<Structure> = None;
-    for (at, solid) in solids.iter().enumerate() {
-        let coarse = topology(solid.clone(), 1e-3);
-        verdict.leaves += coarse.report.leaves;
-        if coarse.report.proved_topology != Some(true) {
-            verdict.certified = false;
-            continue;
-        }
-        let structure = Structure::of(&coarse);
-        if let Some(known) = &known {
-            assert_eq!(&structure, known, "position {at} of {}", name());
-        }
-        known = Some(structure);
-    }
-    let Some(known) = known else {
-        return verdict;
-    };
-    let mut seen = Vec::new();
-    for tolerance in TOLERANCES {
-        let fine = metric(solids[0].clone(), tolerance);
-        if fine.report.uncertified_leaves > 0 {
-            continue;
-        }
-        let structure = Structure::of(&fine);
-        if structure == known {
-            verdict.metric = Some(tolerance);
-            return verdict;
-        }
-        seen.push(structure);
-    }
-    if seen.is_empty() {
-        return verdict;
-    }
-    panic!("proved: {known:?}\nmetric: {seen:?}\n{}", name());
-}
-
 fn compare_trees(count: u64, seed: u64, setting: Setting) -> Vec<Verdict> {
     trees(count, seed, setting)
         .par_iter()
@@ -185,12 +103,16 @@ fn compare_trees(count: u64, seed: u64, setting: Setting) -> Vec<Verdict> {
         .collect()
 }
 
+fn seed() -> u64 {
+    number("CSG2BREP_SEED", 0)
+}
+
 /// 200 trees in general position in four positions of the domain each.
 ///
 /// `CSG2BREP_TREES=2000 CSG2BREP_SEED=1 cargo test --release --test topology` runs others.
 #[test]
 fn random_trees_agree_in_every_position() {
-    let (count, seed) = (number("CSG2BREP_TREES", 200), number("CSG2BREP_SEED", 0));
+    let (count, seed) = (number("CSG2BREP_TREES", 200), seed());
     let verdicts = compare_trees(count, seed, Setting::General);
     println!("trees, seed {seed}: {}", Verdict::summary(&verdicts));
     assert!(verdicts.iter().all(|v| v.certified));
