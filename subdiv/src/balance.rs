@@ -60,11 +60,16 @@ pub(crate) fn prerequisites(m: Point) -> arrayvec::ArrayVec<Point, 4> {
     needed
 }
 
-/// Closes a set of midpoints under [`prerequisites`].
-pub(crate) fn close(points: &mut FxHashSet<Point>, inserted: Vec<Point>) {
+/// Closes a set of midpoints under [`prerequisites`]; calls `new` with each point that it lacked.
+pub(crate) fn close(
+    points: &mut FxHashSet<Point>,
+    inserted: Vec<Point>,
+    mut new: impl FnMut(Point),
+) {
     let mut pending = inserted;
     while let Some(point) = pending.pop() {
         if points.insert(point) {
+            new(point);
             pending.extend(
                 prerequisites(point)
                     .into_iter()
@@ -97,7 +102,7 @@ mod tests {
                 }
             }
             let mut set = FxHashSet::default();
-            close(&mut set, wanted);
+            close(&mut set, wanted, |_| {});
             let mut open: Vec<Simplex> = Simplex::roots().into();
             let mut reached = FxHashSet::default();
             while let Some(simplex) = open.pop() {

@@ -5,7 +5,7 @@ use crate::blossom::RootCoefficients;
 use crate::certify::DegreeTable;
 use crate::error::Error;
 use crate::fragments::Fragments;
-use crate::harvest::{Cut, Extraction, extract};
+use crate::harvest::{Cut, extract, gather};
 use crate::lattice::MAX_LEVEL;
 use crate::limits::Budget;
 use crate::prove::{Proof, Prover, prove};
@@ -168,7 +168,7 @@ fn run(plan: &Plan<'_>, observer: &dyn Observer) -> Result<Outcome, Error> {
         Some(Proof { splits, trails }) => {
             let count = splits.len();
             let mut all = FxHashSet::with_capacity_and_hasher(count * 2, rustc_hash::FxBuildHasher);
-            close(&mut all, splits);
+            close(&mut all, splits, |_| {});
             report.balance_points = (all.len() - count) as u64;
             (Some(all), trails)
         }
@@ -176,23 +176,30 @@ fn run(plan: &Plan<'_>, observer: &dyn Observer) -> Result<Outcome, Error> {
     };
     lap(&mut report.seconds[1]);
     // Leaves that only the closure made are tested on the way, and the rare ones that fail ask
-    // for more bisections; each round goes deeper, the deepest level ends it.
-    let fragments = loop {
+    // for more bisections; then the subtrees that these reach are traversed again.
+    let mut harvests: Vec<_> = sectors.iter().map(|_| None).collect();
+    loop {
         let cut = Cut {
             sectors: &sectors,
             splits: splits.as_ref(),
             trails: &trails,
         };
-        match extract(plan, &budget, cut, &mut report, observer)? {
-            Extraction::Done(fragments) => break fragments,
-            Extraction::Doubts(points) => {
-                let all = splits.get_or_insert_default();
-                report.balance_points += points.len() as u64;
-                report.rounds += 1;
-                close(all, points);
-            }
+        let doubts = extract(plan, &budget, cut, &mut harvests, observer)?;
+        if doubts.is_empty() {
+            break;
         }
-    };
+        report.rounds += 1;
+        let all = splits.get_or_insert_default();
+        close(all, doubts, |point| {
+            report.balance_points += 1;
+            for (sector, harvest) in sectors.iter().zip(&mut harvests) {
+                if sector.simplex.contains(point) {
+                    *harvest = None;
+                }
+            }
+        });
+    }
+    let fragments = gather(plan, harvests, &mut report);
     lap(&mut report.seconds[2]);
     if plan.topology {
         report.proved_topology = Some(report.uncertified_leaves == 0);

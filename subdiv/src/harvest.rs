@@ -28,31 +28,21 @@ pub(crate) struct Cut<'a> {
     pub(crate) trails: &'a [Trail],
 }
 
-/// What came out.
-pub(crate) enum Extraction {
-    /// The boundary in all sectors.
-    Done(Fragments),
-    /// Leaves made by the closure alone fail the topological rule and ask for these midpoints.
-    Doubts(Vec<Point>),
-}
-
-/// The boundary in all sectors.
+/// Extracts the boundary in those sectors whose harvest is missing.
+///
+/// Returns the midpoints at which leaves that only the closure made must be bisected, since they
+/// fail the topological rule; unless there are none, the harvests of their sectors are incomplete.
 pub(crate) fn extract(
     plan: &Plan<'_>,
     budget: &Budget<'_>,
     cut: Cut<'_>,
-    report: &mut Report,
+    harvests: &mut [Option<Harvest>],
     observer: &dyn Observer,
-) -> Result<Extraction, Error> {
-    let Cut {
-        sectors,
-        splits,
-        trails,
-    } = cut;
-    observer.stage("extraction", Some(sectors.len() as u64));
+) -> Result<Vec<Point>, Error> {
+    observer.stage("extraction", Some(cut.sectors.len() as u64));
     budget.restart();
-    let parts: Vec<Result<Harvest, Error>> = sectors
-        .par_iter()
+    let parts: Vec<Result<Vec<Point>, Error>> = harvests
+        .par_iter_mut()
         .enumerate()
         .map_init(
             || {
@@ -63,16 +53,23 @@ pub(crate) fn extract(
                     TopologyRule::default(),
                 )
             },
-            |(walker, extractor, scratch, topology), (at, sector)| {
+            |(walker, extractor, scratch, topology), (at, slot)| {
+                observer.advance(1);
+                if let Some(done) = slot {
+                    budget.add_cells(done.leaves);
+                    return Ok(Vec::new());
+                }
+                let sector = &cut.sectors[at];
                 let mut harvester = Harvester {
                     plan,
                     budget,
-                    splits,
-                    trail: trails.get(at).filter(|_| plan.topology),
+                    splits: cut.splits,
+                    trail: cut.trails.get(at).filter(|_| plan.topology),
                     visited: 0,
                     untested_below: None,
                     topology,
                     harvest: Harvest::new(&sector.simplex),
+                    doubts: Vec::new(),
                     extractor,
                     scratch,
                     pruned: Vec::new(),
@@ -81,23 +78,28 @@ pub(crate) fn extract(
                 };
                 walker.walk(sector, &mut harvester);
                 harvester.flush();
-                observer.advance(1);
                 harvester.harvest.mesh.finish();
-                harvester.error.map_or(Ok(harvester.harvest), Err)
+                *slot = Some(harvester.harvest);
+                harvester.error.map_or(Ok(harvester.doubts), Err)
             },
         )
         .collect();
     budget.check()?;
     let mut doubts = Vec::new();
-    for part in &parts {
-        doubts.extend_from_slice(part.as_ref().map_or(&[], |harvest| &harvest.doubts));
-    }
-    if !doubts.is_empty() {
-        return Ok(Extraction::Doubts(doubts));
-    }
-    let mut meshes = Vec::with_capacity(parts.len());
     for part in parts {
-        let harvest = part?;
+        doubts.extend(part?);
+    }
+    Ok(doubts)
+}
+
+/// Joins the harvests of all sectors.
+pub(crate) fn gather(
+    plan: &Plan<'_>,
+    harvests: Vec<Option<Harvest>>,
+    report: &mut Report,
+) -> Fragments {
+    let mut meshes = Vec::with_capacity(harvests.len());
+    for harvest in harvests.into_iter().flatten() {
         report.leaves += harvest.leaves;
         report.bisections += harvest.bisections;
         report.visited += harvest.leaves + harvest.bisections;
@@ -105,24 +107,21 @@ pub(crate) fn extract(
         report.split_vertices += harvest.mesh.split_vertices;
         report.uncertified_leaves += harvest.uncertified_leaves;
         let room = MAX_SPOTS - report.uncertified.len();
-        report
-            .uncertified
-            .extend(harvest.uncertified.into_iter().take(room));
+        let listed = harvest.uncertified.into_iter().take(room);
+        report.uncertified.extend(listed);
         meshes.push(harvest.mesh);
     }
     let domain: Domain = plan.solid.domain;
-    let fragments = join(meshes, |unit| domain.to_model(unit));
-    Ok(Extraction::Done(fragments))
+    join(meshes, |unit| domain.to_model(unit))
 }
 
 /// What one subtree's second traversal yields.
 #[derive(Debug)]
-struct Harvest {
+pub(crate) struct Harvest {
     mesh: MeshBuilder,
     leaves: u64,
     bisections: u64,
     deepest_level: u8,
-    doubts: Vec<Point>,
     uncertified_leaves: u64,
     uncertified: Vec<Spot>,
 }
@@ -134,7 +133,6 @@ impl Harvest {
             leaves: 0,
             bisections: 0,
             deepest_level: 0,
-            doubts: Vec::new(),
             uncertified_leaves: 0,
             uncertified: Vec::new(),
         }
@@ -153,6 +151,8 @@ struct Harvester<'a> {
     untested_below: Option<u8>,
     topology: &'a mut TopologyRule,
     harvest: Harvest,
+    /// Where leaves that only the closure made must be bisected.
+    doubts: Vec<Point>,
     extractor: &'a mut Extractor,
     scratch: &'a mut LocalizeScratch,
     pruned: Vec<FormulaNode>,
@@ -233,7 +233,7 @@ impl Harvester<'_> {
             return false;
         };
         if simplex.level < self.plan.max_level {
-            self.harvest.doubts.push(simplex.midpoint());
+            self.doubts.push(simplex.midpoint());
             return true;
         }
         self.harvest.uncertified_leaves += 1;

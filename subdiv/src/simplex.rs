@@ -83,22 +83,68 @@ impl Simplex {
     /// Whether `(v1−v0, v2−v0, v3−v0)` is a right-handed frame.
     #[must_use]
     pub(crate) fn is_positive(&self) -> bool {
-        let [o, a, b, c] = self.vertices.map(|v| v.coordinates().map(i64::from));
-        let edge = |v: [i64; 3]| [v[0] - o[0], v[1] - o[1], v[2] - o[2]];
-        let (a, b, c) = (edge(a), edge(b), edge(c));
-        // Edges have at most two different magnitudes per level; 2²⁰ cubed fits an i64.
-        let cross = [
-            b[1] * c[2] - b[2] * c[1],
-            b[2] * c[0] - b[0] * c[2],
-            b[0] * c[1] - b[1] * c[0],
-        ];
-        a[0] * cross[0] + a[1] * cross[1] + a[2] * cross[2] > 0
+        volume(self.vertices) > 0
     }
+
+    /// Whether a point lies in the closed simplex.
+    #[must_use]
+    pub(crate) fn contains(&self, point: Point) -> bool {
+        let whole = volume(self.vertices);
+        (0..4).all(|v| {
+            let mut vertices = self.vertices;
+            vertices[v] = point;
+            // Has the sign of the whole, or is zero.
+            volume(vertices).signum() * whole.signum() >= 0
+        })
+    }
+}
+
+/// Six times the signed volume, in lattice units.
+fn volume(vertices: [Point; 4]) -> i64 {
+    let [o, a, b, c] = vertices.map(|v| v.coordinates().map(i64::from));
+    let edge = |v: [i64; 3]| [v[0] - o[0], v[1] - o[1], v[2] - o[2]];
+    let (a, b, c) = (edge(a), edge(b), edge(c));
+    // Coordinates have 21 bits: six products of three of them fit an i64 with its sign, since the
+    // volume in the cube is at most a third of the cube's.
+    let cross = [
+        b[1] * c[2] - b[2] * c[1],
+        b[2] * c[0] - b[0] * c[2],
+        b[0] * c[1] - b[1] * c[0],
+    ];
+    a[0] * cross[0] + a[1] * cross[1] + a[2] * cross[2]
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use proptest::prelude::*;
+
+    proptest! {
+        /// A point of the cube lies in one root or in several that share it; the lattice point of a
+        /// descendant lies in all its ancestors.
+        #[test]
+        fn containment_follows_the_tree(root in 0usize..6, turns in proptest::collection::vec(any::<bool>(), 0..57)) {
+            let mut simplex = Simplex::roots()[root];
+            let mut ancestors = vec![simplex];
+            for far in turns {
+                let siblings = simplex.children();
+                let m = siblings[0].midpoint();
+                let inside = simplex.vertices.iter().any(|v| *v == m) || siblings[0].contains(m);
+                prop_assert!(inside);
+                simplex = siblings[usize::from(far)];
+                ancestors.push(simplex);
+            }
+            for ancestor in &ancestors {
+                prop_assert!(simplex.vertices.iter().all(|v| ancestor.contains(*v)));
+            }
+            // The apex that the other sibling alone has.
+            for pair in ancestors.windows(2) {
+                let [near, far] = pair[0].children();
+                let (here, other) = if near == pair[1] { (near, far) } else { (far, near) };
+                prop_assert!(!here.contains(other.vertices[0]));
+            }
+        }
+    }
 
     fn six_volumes(s: &Simplex) -> i64 {
         let [o, a, b, c] = s.vertices.map(|v| v.coordinates().map(i64::from));

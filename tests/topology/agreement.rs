@@ -41,7 +41,7 @@ impl Verdict {
 
 /// Fractions of the diagonal for the metric rule. It proves distances only: faces and parts smaller
 /// than the tolerance may come out wrong, so where it differs, a finer one must agree.
-const TOLERANCES: [f64; 4] = [1e-2, 2e-3, 4e-4, 8e-5];
+const TOLERANCES: [f64; 5] = [1e-2, 2e-3, 4e-4, 8e-5, 1.6e-5];
 
 /// Converts a model in all positions of the domain, and by the metric rule.
 pub(crate) fn compare(model: &Model, name: &dyn Fn() -> String) -> Verdict {
