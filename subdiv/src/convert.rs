@@ -213,12 +213,12 @@ fn cut_into_sectors(plan: &Plan<'_>, prover: &mut Prover<'_>) -> Vec<Sector> {
     let mut open: std::collections::VecDeque<_> = walker.roots(plan.solid, &plan.roots).into();
     let mut ended = Vec::new();
     while open.len() + ended.len() < SECTORS {
-        let Some(sector) = open.pop_front() else {
+        let Some(mut sector) = open.pop_front() else {
             break;
         };
-        if prover.visit(&sector.simplex, &sector.frame) {
+        if prover.visit(&sector.simplex, &mut sector.frame) {
             open.extend(walker.bisect(&sector));
-        } else {
+        } else if !sector.frame.active.is_empty() {
             ended.push(sector);
         }
     }

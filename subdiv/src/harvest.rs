@@ -11,7 +11,7 @@ use crate::predicates::{Sign, vertex_sign};
 use crate::settings::{MAX_SPOTS, Observer, Report, Spot};
 use crate::simplex::Simplex;
 use crate::topology::TopologyRule;
-use crate::trail::Trail;
+use crate::trail::{Step, Trail};
 use crate::walk::{Frame, Sector, Visitor};
 use csg::{Domain, FormulaNode, LocalizeScratch, PrimitiveId, Ternary, localize};
 use rayon::prelude::*;
@@ -65,7 +65,7 @@ pub(crate) fn extract(
                     budget,
                     splits: cut.splits,
                     trail: cut.trails.get(at).filter(|_| plan.topology),
-                    visited: 0,
+                    step: Step::default(),
                     untested_below: None,
                     topology,
                     harvest: Harvest::new(&sector.simplex),
@@ -143,9 +143,9 @@ struct Harvester<'a> {
     plan: &'a Plan<'a>,
     budget: &'a Budget<'a>,
     splits: Option<&'a FxHashSet<Point>>,
-    /// The first traversal's decisions, of which `visited` are used up.
+    /// The first traversal's decisions, and how far they have been followed.
     trail: Option<&'a Trail>,
-    visited: usize,
+    step: Step,
     /// Level of the accepted simplex that is bisected all the same: what is below was never
     /// tested.
     untested_below: Option<u8>,
@@ -202,8 +202,8 @@ impl Harvester<'_> {
 }
 
 impl Harvester<'_> {
-    /// Whether to bisect, and whether the rule has seen the simplex.
-    fn decide(&mut self, simplex: &Simplex) -> (bool, bool) {
+    /// Whether to bisect, and whether the rule has seen the simplex; prunes the frame as it did.
+    fn decide(&mut self, simplex: &Simplex, frame: &mut Frame) -> (bool, bool) {
         let Some(set) = self.splits else {
             return (simplex.level < self.plan.max_level, true);
         };
@@ -217,8 +217,11 @@ impl Harvester<'_> {
             return (set.contains(&simplex.midpoint()), false);
         }
         self.untested_below = None;
-        let asked = trail.get(self.visited);
-        self.visited += 1;
+        let (asked, pruning) = trail.follow(&mut self.step);
+        frame.prune(pruning, &mut self.pruned, self.scratch);
+        if frame.active.is_empty() {
+            return (false, true);
+        }
         let split = asked || set.contains(&simplex.midpoint());
         if split && !asked {
             self.untested_below = Some(simplex.level);
@@ -228,8 +231,11 @@ impl Harvester<'_> {
 
     /// Applies the topological rule to a leaf that only the closure made; whether it must be
     /// bisected after all.
-    fn fails(&mut self, simplex: &Simplex, frame: &Frame) -> bool {
-        let Err(reason) = self.topology.test(self.plan, simplex, frame) else {
+    fn fails(&mut self, simplex: &Simplex, frame: &mut Frame) -> bool {
+        let verdict = self.topology.test(self.plan, simplex, frame);
+        let pruning = self.topology.pruning();
+        let Err(reason) = verdict else {
+            frame.prune(pruning, &mut self.pruned, self.scratch);
             return false;
         };
         if simplex.level < self.plan.max_level {
@@ -246,8 +252,11 @@ impl Harvester<'_> {
 }
 
 impl Visitor for Harvester<'_> {
-    fn visit(&mut self, simplex: &Simplex, frame: &Frame) -> bool {
-        let (split, tested) = self.decide(simplex);
+    fn visit(&mut self, simplex: &Simplex, frame: &mut Frame) -> bool {
+        let (split, tested) = self.decide(simplex, frame);
+        if frame.active.is_empty() {
+            return false;
+        }
         if split {
             self.harvest.bisections += 1;
             return true;
@@ -255,6 +264,9 @@ impl Visitor for Harvester<'_> {
         if !tested && self.fails(simplex, frame) {
             // What is below is tested at once, so that one more round is enough for it.
             return true;
+        }
+        if frame.active.is_empty() {
+            return false;
         }
         self.harvest.leaves += 1;
         self.harvest.deepest_level = self.harvest.deepest_level.max(simplex.level);

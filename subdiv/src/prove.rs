@@ -12,8 +12,8 @@ use crate::settings::{MAX_SPOTS, Observer, Reason, Report, Spot};
 use crate::simplex::Simplex;
 use crate::topology::TopologyRule;
 use crate::trail::Trail;
-use crate::walk::{Frame, Sector, Visitor};
-use csg::{Domain, FormulaNode, PrimitiveId, Sense};
+use crate::walk::{Frame, Pruning, Sector, Visitor};
+use csg::{Domain, FormulaNode, LocalizeScratch, PrimitiveId, Sense};
 use glam::DVec3;
 use rayon::prelude::*;
 
@@ -94,6 +94,10 @@ pub(crate) struct Prover<'a> {
     leaves: u64,
     sheets: Vec<Sheet>,
     topology: TopologyRule,
+    /// What the last test found to be of no account.
+    pruning: Pruning,
+    pruned: Vec<FormulaNode>,
+    scratch: LocalizeScratch,
 }
 
 impl<'a> Prover<'a> {
@@ -105,6 +109,9 @@ impl<'a> Prover<'a> {
             leaves: 0,
             sheets: Vec::new(),
             topology: TopologyRule::default(),
+            pruning: Pruning::default(),
+            pruned: Vec::new(),
+            scratch: LocalizeScratch::default(),
         }
     }
 
@@ -114,10 +121,12 @@ impl<'a> Prover<'a> {
 
     /// The rule that was asked for; the largest deviation where the metric one accepts.
     fn test(&mut self, simplex: &Simplex, frame: &Frame) -> Result<f64, Reason> {
-        match self.plan.tolerance {
-            Some(tolerance) => self.test_deviation(simplex, frame, tolerance),
-            None => self.topology.test(self.plan, simplex, frame).map(|()| 0.0),
+        if let Some(tolerance) = self.plan.tolerance {
+            return self.test_deviation(simplex, frame, tolerance);
         }
+        let verdict = self.topology.test(self.plan, simplex, frame);
+        self.pruning = self.topology.pruning();
+        verdict.map(|()| 0.0)
     }
 
     /// The metric rule; the largest deviation where it accepts.
@@ -185,8 +194,12 @@ impl<'a> Prover<'a> {
     }
 
     /// Whether to bisect.
-    fn decide(&mut self, simplex: &Simplex, frame: &Frame) -> bool {
-        match self.test(simplex, frame) {
+    fn decide(&mut self, simplex: &Simplex, frame: &mut Frame) -> bool {
+        let verdict = self.test(simplex, frame);
+        frame.prune(self.pruning, &mut self.pruned, &mut self.scratch);
+        match verdict {
+            // The surfaces that failed do not matter.
+            _ if frame.active.is_empty() => {}
             Ok(deviation) => {
                 self.findings.largest_deviation = self.findings.largest_deviation.max(deviation);
             }
@@ -225,13 +238,13 @@ impl Spot {
 }
 
 impl Visitor for Prover<'_> {
-    fn visit(&mut self, simplex: &Simplex, frame: &Frame) -> bool {
+    fn visit(&mut self, simplex: &Simplex, frame: &mut Frame) -> bool {
         self.findings.visited += 1;
         if !self.plan.is_adaptive() {
             return simplex.level < self.plan.max_level;
         }
         let bisect = self.decide(simplex, frame);
-        self.findings.trail.push(bisect);
+        self.findings.trail.push(bisect, self.pruning);
         bisect
     }
 

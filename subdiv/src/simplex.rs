@@ -128,9 +128,8 @@ mod tests {
             let mut ancestors = vec![simplex];
             for far in turns {
                 let siblings = simplex.children();
-                let m = siblings[0].midpoint();
-                let inside = simplex.vertices.iter().any(|v| *v == m) || siblings[0].contains(m);
-                prop_assert!(inside);
+                let m = simplex.midpoint();
+                prop_assert!(siblings.iter().all(|sibling| sibling.contains(m)));
                 simplex = siblings[usize::from(far)];
                 ancestors.push(simplex);
             }

@@ -25,7 +25,7 @@ mod walls;
 use crate::convert::Plan;
 use crate::settings::Reason;
 use crate::simplex::Simplex;
-use crate::walk::Frame;
+use crate::walk::{Frame, Pruning};
 use arrayvec::ArrayVec;
 use csg::{FormulaNode, LocalizeScratch};
 use kindred::Kin;
@@ -35,6 +35,7 @@ use surface::{Cone, LeafFrame, Surface};
 /// Tests leaves; holds only work space between them.
 #[derive(Debug, Default)]
 pub(crate) struct TopologyRule {
+    pruning: Pruning,
     open: Vec<(usize, Patterns)>,
     pruned: Vec<FormulaNode>,
     scratch: LocalizeScratch,
@@ -51,6 +52,7 @@ impl TopologyRule {
         simplex: &Simplex,
         frame: &Frame,
     ) -> Result<(), Reason> {
+        self.pruning = Pruning::default();
         let count = frame.active.len();
         if count > CROWD {
             return Err(Reason::Crowded);
@@ -74,15 +76,9 @@ impl TopologyRule {
             feasible: Patterns::ALL,
             labelled: plan.labelled,
         };
-        for at in 0..count {
-            if leaf.needs(&[at]) {
-                let cone = surfaces[at].find_cone(&leaf_frame);
-                surfaces[at].cone = Some(cone.ok_or(Reason::Singular)?);
-            }
-        }
-        leaf.test_pairs(&surfaces)?;
-        leaf.test_triples(&surfaces)?;
-        leaf.test_quadruples(&surfaces)?;
+        let verdict = leaf.test_surfaces(&mut surfaces);
+        self.pruning = leaf.pruning(count);
+        verdict?;
         for apex in walls::wall_facets(simplex) {
             let (pruned, scratch) = (&mut self.pruned, &mut self.scratch);
             if !walls::is_decided(frame, apex, pruned, scratch) {
@@ -90,6 +86,13 @@ impl TopologyRule {
             }
         }
         Ok(())
+    }
+}
+
+impl TopologyRule {
+    /// What the last leaf tested can do without.
+    pub(crate) fn pruning(&self) -> Pruning {
+        self.pruning
     }
 }
 
@@ -127,6 +130,71 @@ impl Leaf<'_> {
 
     fn exclude(&mut self, pattern: Patterns) {
         self.feasible = self.feasible.intersection(pattern.complement());
+    }
+
+    fn test_surfaces(&mut self, surfaces: &mut [Surface<'_>]) -> Result<(), Reason> {
+        let mut unruly = ArrayVec::<usize, CROWD>::new();
+        for (at, surface) in surfaces.iter_mut().enumerate() {
+            if self.needs(&[at]) {
+                surface.cone = surface.find_cone(self.frame);
+                if surface.cone.is_none() {
+                    unruly.push(at);
+                }
+            }
+        }
+        for &at in &unruly {
+            if !self.is_hidden(surfaces, at) {
+                return Err(Reason::Singular);
+            }
+        }
+        self.test_pairs(surfaces)?;
+        self.test_triples(surfaces)?;
+        self.test_quadruples(surfaces)
+    }
+
+    /// Whether others hide a surface wherever it passes, such as that of a ball inside another one.
+    fn is_hidden(&mut self, surfaces: &[Surface<'_>], at: usize) -> bool {
+        for other in 0..surfaces.len() {
+            if other == at || !self.needs(&[at.min(other), at.max(other)]) {
+                continue;
+            }
+            if let Some(pattern) = pairs::apart(surfaces, at.min(other), at.max(other)) {
+                self.exclude(pattern);
+                if !self.needs(&[at]) {
+                    return true;
+                }
+            }
+        }
+        false
+    }
+
+    /// The primitives that the formula can do without, given the patterns that do not occur.
+    fn pruning(&self, count: usize) -> Pruning {
+        let mut pruning = Pruning::default();
+        if self.labelled {
+            return pruning;
+        }
+        let mut formula = self.formula;
+        for at in 0..count {
+            let turns = formula
+                .difference(formula.flipped(at))
+                .intersection(self.feasible);
+            // Only where it is outside does it matter that it is not inside.
+            for inside in [false, true] {
+                if turns.intersection(Patterns::with(at, !inside)).is_empty() {
+                    let kept = formula.intersection(Patterns::with(at, inside));
+                    formula = kept.union(kept.flipped(at));
+                    let set = if inside {
+                        &mut pruning.inside
+                    } else {
+                        &mut pruning.outside
+                    };
+                    *set |= 1 << at;
+                    break;
+                }
+            }
+        }
+        pruning
     }
 
     /// The cones with which some surfaces are tested together: of those that are kin, the first

@@ -55,6 +55,39 @@ impl Frame {
         self.formula.clear();
     }
 
+    /// Drops primitives that do not matter; without any left the formula is decided.
+    ///
+    /// `pruned`: work space.
+    pub(crate) fn prune(
+        &mut self,
+        pruning: Pruning,
+        pruned: &mut Vec<FormulaNode>,
+        scratch: &mut LocalizeScratch,
+    ) {
+        if pruning.is_empty() {
+            return;
+        }
+        let bit = |set: u8, at: usize| at < 8 && set >> at & 1 == 1;
+        let active = &self.active;
+        let value = |p: PrimitiveId| match active.iter().position(|a| a.primitive == p.0) {
+            Some(at) if bit(pruning.inside, at) => Ternary::In,
+            Some(at) if bit(pruning.outside, at) => Ternary::Out,
+            _ => Ternary::Unknown,
+        };
+        pruned.clear();
+        let result = localize(&self.formula, value, pruned, scratch);
+        std::mem::swap(&mut self.formula, pruned);
+        if result != Ternary::Unknown {
+            self.formula.clear();
+        }
+        let formula = &self.formula;
+        self.active.retain(|a| {
+            formula.iter().any(|node| {
+                matches!(node, FormulaNode::Literal(literal) if literal.primitive.0 == a.primitive)
+            })
+        });
+    }
+
     /// The Bernstein coefficients of an active primitive.
     #[must_use]
     pub(crate) fn coefficients_of(&self, active: &Active) -> &[f64] {
@@ -66,6 +99,26 @@ impl Frame {
     #[must_use]
     pub(crate) fn values_of(&self, active: &Active) -> [f64; 4] {
         vertex_values(active.degree as usize, self.coefficients_of(active))
+    }
+}
+
+/// Primitives whose sign in a simplex no longer matters, by their places among the active ones.
+///
+/// The formula has the same value at all points of the simplex when each of them is taken to be
+/// inside everywhere, or outside everywhere.
+#[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
+pub(crate) struct Pruning {
+    /// One bit for each that is taken to be inside.
+    pub inside: u8,
+    /// One bit for each that is taken to be outside.
+    pub outside: u8,
+}
+
+impl Pruning {
+    /// Whether there is none.
+    #[must_use]
+    pub(crate) fn is_empty(self) -> bool {
+        self == Self::default()
     }
 }
 
@@ -81,7 +134,9 @@ pub(crate) struct Sector {
 /// Visits the simplices that meet the boundary.
 pub(crate) trait Visitor {
     /// Looks at a simplex whose formula is undecided; whether to bisect it.
-    fn visit(&mut self, simplex: &Simplex, frame: &Frame) -> bool;
+    ///
+    /// It may prune the frame, down to nothing where no boundary is left.
+    fn visit(&mut self, simplex: &Simplex, frame: &mut Frame) -> bool;
 
     /// Whether to stop the traversal.
     fn stopped(&self) -> bool {
@@ -168,8 +223,9 @@ impl Walker {
 
     /// Visits a sector and its descendants in depth-first order.
     pub(crate) fn walk(&mut self, sector: &Sector, visitor: &mut impl Visitor) {
-        if visitor.visit(&sector.simplex, &sector.frame) {
-            self.walk_children(&sector.simplex, &sector.frame, 0, visitor);
+        let mut frame = sector.frame.clone();
+        if visitor.visit(&sector.simplex, &mut frame) {
+            self.walk_children(&sector.simplex, &frame, 0, visitor);
         }
     }
 
@@ -191,7 +247,7 @@ impl Walker {
         for side in 0..2 {
             if undecided[side]
                 && !visitor.stopped()
-                && visitor.visit(&children[side], &frames[side])
+                && visitor.visit(&children[side], &mut frames[side])
             {
                 self.walk_children(&children[side], &frames[side], depth + 1, visitor);
             }

@@ -57,7 +57,7 @@ pub(crate) fn compare(model: &Model, name: &dyn Fn() -> String) -> Verdict {
     }
     let mut known: Option<Structure> = None;
     for (at, solid) in solids.iter().enumerate() {
-        let coarse = topology(solid.clone(), 1e-3);
+        let coarse = topology(solid.clone(), 1e-5);
         verdict.leaves += coarse.report.leaves;
         if coarse.report.proved_topology != Some(true) {
             verdict.certified = false;
