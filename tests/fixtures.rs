@@ -18,6 +18,7 @@ fn models() -> Vec<PathBuf> {
     let folders = [
         "fixtures/solids",
         "fixtures/models",
+        "fixtures/thesis",
         "fixtures/third_party/openscad",
     ];
     let mut models: Vec<PathBuf> = folders
