@@ -1,5 +1,5 @@
-//! Every model in `fixtures/`, in every mesh format: closed in manifold3d's eyes, and the same
-//! bytes for any number of threads.
+//! Every model in `fixtures/`, in every mesh format: closed in manifold3d's eyes, without
+//! self-intersections in CGAL's, and the same bytes for any number of threads.
 
 #![allow(clippy::unwrap_used, reason = "a panic is how a test fails")]
 
@@ -82,6 +82,45 @@ fn every_fixture_is_manifold() {
     for (path, report) in paths.iter().zip(support::manifold_report(&paths)) {
         assert_eq!(report.status, "NoError", "{}", path.display());
     }
+    paths.retain(|path| path.extension().is_some_and(|end| end == "obj"));
+    for report in support::intersection_report(&paths) {
+        assert_eq!(report.crossings, 0, "{report:?}");
+    }
+}
+
+/// The check sees what it is made for: two cubes, one moved into the other, as one file.
+#[test]
+fn crossing_triangles_are_found() {
+    let cube = convert_solid(
+        csg::Solid::build(&read("cube(1);"), None).unwrap(),
+        &Settings::new(Rule::Tolerance(0.1)),
+    );
+    let mut text = String::from_utf8(files(&cube)[0].1.clone()).unwrap();
+    let count = text.lines().filter(|line| line.starts_with("v ")).count();
+    let moved: Vec<String> = text
+        .lines()
+        .filter(|line| line.starts_with("v ") || line.starts_with("f "))
+        .map(|line| {
+            let mut words = line.split(' ');
+            let kind = words.next().unwrap();
+            let words = words.map(|word| {
+                if kind == "v" {
+                    (word.parse::<f64>().unwrap() * 0.5 + 0.25 + f64::from(u8::from(word == "1")))
+                        .to_string()
+                } else {
+                    let index = word.split('/').next().unwrap();
+                    (index.parse::<usize>().unwrap() + count).to_string()
+                }
+            });
+            format!("{kind} {}", words.collect::<Vec<_>>().join(" "))
+        })
+        .collect();
+    text.push_str(&moved.join("\n"));
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("crossing.obj");
+    fs::write(&path, text).unwrap();
+    let report = &support::intersection_report(&[path])[0];
+    assert!(report.crossings > 0 && report.depth > 0.1, "{report:?}");
 }
 
 #[test]

@@ -69,6 +69,9 @@ fn random_trees_are_manifold() {
         let reports = support::manifold_report(chunk);
         for (path, report) in chunk.iter().zip(&reports) {
             assert_eq!(report.status, "NoError", "{}", path.display());
+        }
+        for (path, report) in chunk.iter().zip(support::intersection_report(chunk)) {
+            assert_eq!(report.crossings, 0, "{report:?}");
             fs::remove_file(path).unwrap();
         }
     }

@@ -92,8 +92,13 @@ impl Extractor {
         self.arrangement.clear();
         self.vertices.clear();
         self.triangulator.clear();
+        let start = mesh.triangles.len();
         for own in 0..count {
             self.extract_polygon(&leaf, own, mesh);
+        }
+        if leaf.is_curved() && mesh.triangles.len() > start + 1 {
+            let leaf = [start as u32, mesh.triangles.len() as u32];
+            mesh.tangles.leaves.push(leaf);
         }
         Ok(())
     }
@@ -204,7 +209,8 @@ impl Extractor {
         for &edge in boundary {
             let side = complex.side(edge, polygon.arrangement);
             let formula = &mut self.formula;
-            real.push(self.vertices.real_vertex(formula, polygon, side, mesh));
+            let corner = self.vertices.real_vertex(formula, polygon, side, mesh);
+            real.push(corner.map(|corner| corner.vertex));
         }
         let n = boundary.len();
         for start in 0..n {
@@ -215,7 +221,7 @@ impl Extractor {
             let mut at = (start + 1) % n;
             while real[at].is_none() && at != start {
                 let from = complex.side(boundary[at], polygon.arrangement).from;
-                between.push(self.vertices.local_vertex(polygon, from, mesh));
+                between.push(self.vertices.local_vertex(polygon, from, mesh).vertex);
                 at = (at + 1) % n;
             }
             let Some(end) = real[at] else { continue };
@@ -236,14 +242,11 @@ impl Extractor {
         mesh: &mut MeshBuilder,
     ) {
         let formula = &mut self.formula;
-        let vertex = match self.vertices.real_vertex(formula, polygon, side, mesh) {
+        let corner = match self.vertices.real_vertex(formula, polygon, side, mesh) {
             None if keep_unreal => Some(self.vertices.local_vertex(polygon, side.from, mesh)),
-            vertex => vertex,
+            corner => corner,
         };
-        if let Some(vertex) = vertex {
-            let planes = polygon.arrangement.vertex(side.from).planes;
-            self.ring.push(Corner { vertex, planes });
-        }
+        self.ring.extend(corner);
         if is_boundary {
             let middle = self.vertices.middle_vertex(formula, polygon, side, mesh);
             self.ring.extend(middle);

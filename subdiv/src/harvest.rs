@@ -12,6 +12,7 @@ use crate::settings::{MAX_SPOTS, Observer, Report, Spot};
 use crate::simplex::Simplex;
 use crate::topology::TopologyRule;
 use crate::trail::{Step, Trail};
+use crate::untangle::untangle;
 use crate::walk::{Frame, Sector, Visitor};
 use csg::{Domain, FormulaNode, LocalizeScratch, PrimitiveId, Ternary, localize};
 use rayon::prelude::*;
@@ -112,7 +113,11 @@ pub(crate) fn gather(
         meshes.push(harvest.mesh);
     }
     let domain: Domain = plan.solid.domain;
-    join(meshes, |unit| domain.to_model(unit))
+    let (mut fragments, tangles) = join(meshes, |unit| domain.to_model(unit));
+    let primitives = plan.solid.primitives.iter();
+    let is_plane: Vec<bool> = primitives.map(|p| p.polynomial.degree() == 1).collect();
+    report.crossing_leaves = untangle(&mut fragments, &tangles, &is_plane);
+    fragments
 }
 
 /// What one subtree's second traversal yields.

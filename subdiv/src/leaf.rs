@@ -33,6 +33,11 @@ impl Leaf<'_> {
         self.at(snapped.flatten().unwrap_or(affine))
     }
 
+    /// Whether any of its surfaces is not a plane, so that vertices leave the interpolants.
+    pub(crate) fn is_curved(&self) -> bool {
+        self.polynomials.iter().any(|p| p.degree > 1)
+    }
+
     /// Position of an arrangement vertex on the interpolants.
     pub(crate) fn affine_position(&self, name: [u16; 3]) -> DVec3 {
         self.at(barycentric(&self.planes, name))

@@ -43,6 +43,7 @@ mod extract;
 mod fragments;
 mod halving;
 mod harvest;
+mod kernel;
 mod lattice;
 mod leaf;
 mod leaf_formula;
@@ -59,6 +60,7 @@ mod simplex;
 mod snap;
 mod topology;
 mod trail;
+mod untangle;
 mod vertices;
 mod walk;
 

@@ -4,6 +4,7 @@ use crate::fragments::{Fragments, Triangle, VertexKind};
 use crate::lattice::Point;
 use crate::leaf_formula::Label;
 use crate::simplex::Simplex;
+use crate::untangle::Tangles;
 use csg::{PrimitiveId, Sense};
 use glam::DVec3;
 use rustc_hash::FxHashMap;
@@ -44,9 +45,11 @@ pub(crate) struct MeshBuilder {
     pub kinds: Vec<VertexKind>,
     /// The triangles so far.
     pub triangles: Vec<Triangle>,
-    /// Vertices that must not lie on their true surfaces, and where their affine interpolants put
-    /// them.
-    pub affine: Vec<(u32, DVec3)>,
+    /// Leaves with several surfaces, and where their vertices may have to return to; positions
+    /// in the domain's own coordinates.
+    pub tangles: Tangles,
+    /// Whether `tangles` knows a vertex, parallel to `positions`.
+    has_home: Vec<bool>,
     /// Vertices that only exist since the boundary touches itself.
     pub split_vertices: u64,
     edges: FxHashMap<(Point, u32), u32>,
@@ -110,7 +113,8 @@ impl MeshBuilder {
             positions: Vec::new(),
             kinds: Vec::new(),
             triangles: Vec::new(),
-            affine: Vec::new(),
+            tangles: Tangles::default(),
+            has_home: Vec::new(),
             split_vertices: 0,
             edges: FxHashMap::default(),
             facets: FxHashMap::default(),
@@ -165,6 +169,17 @@ impl MeshBuilder {
         vertex
     }
 
+    /// Notes where the interpolants put a vertex of a leaf with several surfaces.
+    pub(crate) fn note_home(&mut self, vertex: u32, position: DVec3) {
+        let at = vertex as usize;
+        if self.has_home.len() <= at {
+            self.has_home.resize(self.positions.len(), false);
+        }
+        if !std::mem::replace(&mut self.has_home[at], true) {
+            self.tangles.interpolated.push((vertex, position));
+        }
+    }
+
     /// Appends a triangle given counter-clockwise as seen from where its primitive is positive.
     pub(crate) fn push_oriented(&mut self, [a, b, c]: [u32; 3], primitive: u32, label: Label) {
         self.triangles.push(Triangle {
@@ -192,17 +207,23 @@ impl MeshBuilder {
     pub(crate) fn finish(&mut self) {
         self.edges = FxHashMap::default();
         self.facets = FxHashMap::default();
+        self.has_home = Vec::new();
     }
 }
 
-/// Joins the meshes of all subtrees, in their order; a shared vertex is the first one's.
+/// Joins the meshes of all subtrees, in their order; a shared vertex is the first one's. Lengths
+/// come out in model units.
 #[must_use]
-pub(crate) fn join(parts: Vec<MeshBuilder>, to_model: impl Fn(DVec3) -> DVec3) -> Fragments {
+pub(crate) fn join(
+    parts: Vec<MeshBuilder>,
+    to_model: impl Fn(DVec3) -> DVec3,
+) -> (Fragments, Tangles) {
     let mut whole = Fragments {
         positions: Vec::with_capacity(parts.iter().map(|p| p.positions.len()).sum()),
         kinds: Vec::with_capacity(parts.iter().map(|p| p.positions.len()).sum()),
         triangles: Vec::with_capacity(parts.iter().map(|p| p.triangles.len()).sum()),
     };
+    let mut tangles = Tangles::default();
     let mut shared: FxHashMap<Name, u32> = FxHashMap::default();
     let mut renumbered: Vec<u32> = Vec::new();
     for part in parts {
@@ -225,9 +246,19 @@ pub(crate) fn join(parts: Vec<MeshBuilder>, to_model: impl Fn(DVec3) -> DVec3) -
         for (name, vertex) in new_border {
             shared.insert(name, renumbered[vertex as usize]);
         }
-        for (vertex, position) in &part.affine {
-            whole.positions[renumbered[*vertex as usize] as usize] = to_model(*position);
-        }
+        let new = |vertex: &u32| renumbered[*vertex as usize];
+        let homes = part.tangles.interpolated.iter();
+        tangles
+            .interpolated
+            .extend(homes.map(|(vertex, at)| (new(vertex), to_model(*at))));
+        tangles
+            .objections
+            .extend(part.tangles.objections.iter().map(new));
+        let before = whole.triangles.len() as u32;
+        let leaves = part.tangles.leaves.iter();
+        tangles
+            .leaves
+            .extend(leaves.map(|leaf| leaf.map(|at| before + at)));
         whole
             .triangles
             .extend(part.triangles.iter().map(|t| Triangle {
@@ -235,5 +266,5 @@ pub(crate) fn join(parts: Vec<MeshBuilder>, to_model: impl Fn(DVec3) -> DVec3) -
                 ..*t
             }));
     }
-    whole
+    (whole, tangles)
 }

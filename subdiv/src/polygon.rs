@@ -1,24 +1,32 @@
 //! Triangulation of one planar piece of the boundary between given mesh vertices.
 
 use crate::arrange::{FACET, NO_PLANE};
+use crate::kernel::Kernel;
 use crate::leaf_formula::Label;
 use crate::mesh::MeshBuilder;
 use glam::{DVec2, DVec3};
 
 /// A corner of a piece: its mesh vertex and the planes of the leaf on which it lies.
-#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+#[derive(Clone, Copy, PartialEq, Debug)]
 pub(crate) struct Corner {
     /// Index in the mesh.
     pub vertex: u32,
     /// Planes as numbered by [`crate::arrange`].
     pub planes: [u16; 3],
+    /// Where the interpolants put it, in the domain's own coordinates.
+    pub affine: DVec3,
 }
+
+/// Planes of a vertex inside a piece, which no neighbour knows.
+const FREE: [u16; 3] = [NO_PLANE; 3];
 
 /// Clips ears, remembering the diagonals used in the leaf.
 #[derive(Debug, Default)]
 pub(crate) struct PieceTriangulator {
     diagonals: Vec<[u32; 2]>,
     flat: Vec<DVec2>,
+    normal: DVec3,
+    kernel: Kernel,
 }
 
 impl PieceTriangulator {
@@ -33,7 +41,8 @@ impl PieceTriangulator {
     /// No diagonal joins two corners that share a plane besides the piece's own: they lie on a
     /// common side, and the neighbour there may join them, too. When no ear is left, corners on
     /// one primitive may be joined across the piece, where that primitive makes no boundary; then
-    /// the rest is a fan around a new inner vertex.
+    /// the rest is a fan around a new inner vertex that sees all corners. Without such a point an
+    /// ear is cut off by way of a new vertex in it, once for each corner.
     pub(crate) fn triangulate(
         &mut self,
         ring: &mut Vec<Corner>,
@@ -41,16 +50,37 @@ impl PieceTriangulator {
         mesh: &mut MeshBuilder,
     ) {
         if ring.len() > 3 {
-            self.flatten(ring, mesh);
+            self.flatten(ring);
         }
         while ring.len() > 3 {
             let strict = self.best_ear(ring, |a, c| share_a_side(a, c, own));
-            let Some(ear) = strict.or_else(|| self.best_ear(ring, share_a_facet)) else {
-                fan(ring, primitive, label, mesh);
-                return;
-            };
             let n = ring.len();
-            let (a, b, c) = (ring[(ear + n - 1) % n], ring[ear], ring[(ear + 1) % n]);
+            let around = |ear: usize| (ring[(ear + n - 1) % n], ring[ear], ring[(ear + 1) % n]);
+            let Some(ear) = strict.or_else(|| self.best_ear(ring, share_a_facet)) else {
+                let corners = ring.iter().map(|corner| corner.affine);
+                let center = self.kernel.center(corners, self.normal);
+                let tip = self
+                    .best_ear(ring, |_, _| false)
+                    .filter(|ear| center.is_none() && ring[*ear].planes != FREE);
+                let Some(tip) = tip else {
+                    let center = center.unwrap_or_else(|| least_folded(ring));
+                    fan(ring, center, primitive, label, mesh);
+                    return;
+                };
+                let (a, b, c) = around(tip);
+                let affine = (a.affine + b.affine + c.affine) / 3.0;
+                let vertex = mesh.interior_vertex(affine);
+                mesh.push_oriented([a.vertex, b.vertex, vertex], primitive, label);
+                mesh.push_oriented([b.vertex, c.vertex, vertex], primitive, label);
+                ring[tip] = Corner {
+                    vertex,
+                    planes: FREE,
+                    affine,
+                };
+                self.flatten(ring);
+                continue;
+            };
+            let (a, b, c) = around(ear);
             mesh.push_oriented([a.vertex, b.vertex, c.vertex], primitive, label);
             self.diagonals.push(diagonal(a, c));
             ring.remove(ear);
@@ -62,14 +92,18 @@ impl PieceTriangulator {
     }
 
     /// Projects the corners along the piece's dominant normal axis, keeping the orientation.
-    fn flatten(&mut self, ring: &[Corner], mesh: &MeshBuilder) {
-        let at = |c: &Corner| mesh.positions[c.vertex as usize];
+    ///
+    /// On the interpolants, where the piece is flat: should its vertices have to return there, the
+    /// triangles are right.
+    fn flatten(&mut self, ring: &[Corner]) {
+        let at = |c: &Corner| c.affine;
         let mut normal = DVec3::ZERO;
         for (n, corner) in ring.iter().enumerate() {
             let next = at(&ring[(n + 1) % ring.len()]);
             let origin = at(&ring[0]);
             normal += (at(corner) - origin).cross(next - origin);
         }
+        self.normal = normal;
         let size = normal.abs();
         self.flat.clear();
         self.flat.extend(ring.iter().map(|corner| {
@@ -145,9 +179,24 @@ fn share_a_facet(a: Corner, b: Corner) -> bool {
             .any(|p| b.planes.contains(p))
 }
 
-fn fan(ring: &[Corner], primitive: u32, label: Label, mesh: &mut MeshBuilder) {
-    let sum: DVec3 = ring.iter().map(|c| mesh.positions[c.vertex as usize]).sum();
-    let center = mesh.interior_vertex(sum / ring.len() as f64);
+/// The corner around which a fan covers least: where planes coincide, a ring may run to and fro
+/// along a line, and any other place would fold the fan over itself.
+fn least_folded(ring: &[Corner]) -> DVec3 {
+    let covered = |center: DVec3| -> f64 {
+        let next = ring.iter().cycle().skip(1);
+        let sides = ring.iter().zip(next);
+        sides
+            .map(|(a, b)| (a.affine - center).cross(b.affine - center).length())
+            .sum()
+    };
+    let least = |a: &DVec3, b: &DVec3| covered(*a).total_cmp(&covered(*b));
+    let corners = ring.iter().map(|corner| corner.affine);
+    corners.min_by(least).unwrap_or_default()
+}
+
+/// Joins every side to a new vertex on the interpolants.
+fn fan(ring: &[Corner], center: DVec3, primitive: u32, label: Label, mesh: &mut MeshBuilder) {
+    let center = mesh.interior_vertex(center);
     for (at, corner) in ring.iter().enumerate() {
         let next = ring[(at + 1) % ring.len()];
         mesh.push_oriented([corner.vertex, next.vertex, center], primitive, label);

@@ -107,6 +107,9 @@ pub struct Report {
     pub uncertified: Vec<Spot>,
     /// Vertices duplicated since the boundary touches itself there.
     pub split_vertices: u64,
+    /// Leaves in which triangles of different surfaces cross by rounding of their positions;
+    /// otherwise none do anywhere.
+    pub crossing_leaves: u64,
     /// Seconds taken by: proving (first traversal), balancing, extraction.
     pub seconds: [f64; 3],
 }

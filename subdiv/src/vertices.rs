@@ -54,7 +54,7 @@ impl VertexNamer {
         polygon: &LeafPolygon<'_>,
         side: CellSide,
         mesh: &mut MeshBuilder,
-    ) -> Option<u32> {
+    ) -> Option<Corner> {
         let name = polygon.arrangement.vertex(side.from).planes;
         let vertex = match name.iter().filter(|p| **p < FACET).count() {
             1 => polygon.edge_vertex(name, &mut self.snapper, mesh),
@@ -63,10 +63,19 @@ impl VertexNamer {
         };
         let position = mesh.positions[vertex as usize];
         let leaf = polygon.leaf;
-        if !leaf.keeps_sides(name, side.pattern, position, &mut self.snapper) {
-            mesh.affine.push((vertex, leaf.affine_position(name)));
+        let mut affine = position;
+        if leaf.is_curved() {
+            affine = leaf.affine_position(name);
+            mesh.note_home(vertex, affine);
+            if !leaf.keeps_sides(name, side.pattern, position, &mut self.snapper) {
+                mesh.tangles.objections.push(vertex);
+            }
         }
-        Some(vertex)
+        Some(Corner {
+            vertex,
+            planes: name,
+            affine,
+        })
     }
 
     fn facet_vertex(
@@ -197,20 +206,27 @@ impl VertexNamer {
         let primitives = [lower as u16, own.max(other) as u16];
         let name = ([from.min(to), from.max(to)], primitives, quadrant);
         let planes = [primitives[0], primitives[1], NO_PLANE];
-        if let Some((_, vertex)) = self.middles.iter().find(|(n, _)| *n == name) {
-            return Some(Corner {
-                vertex: *vertex,
-                planes,
-            });
+        let ends = [from, to].map(|v| polygon.arrangement.vertex(v).planes);
+        let homes = ends.map(|name| polygon.leaf.affine_position(name));
+        let affine = (homes[0] + homes[1]) * 0.5;
+        let known = self.middles.iter().find(|(n, _)| *n == name);
+        let vertex = known.map_or_else(
+            || {
+                let at = ends.map(|name| polygon.leaf.position(name, &mut self.snapper));
+                mesh.split_vertices += 1;
+                mesh.interior_vertex((at[0] + at[1]) * 0.5)
+            },
+            |(_, vertex)| *vertex,
+        );
+        if known.is_none() {
+            self.middles.push((name, vertex));
+            mesh.note_home(vertex, affine);
         }
-        let ends = [from, to].map(|v| {
-            let name = polygon.arrangement.vertex(v).planes;
-            polygon.leaf.position(name, &mut self.snapper)
-        });
-        let vertex = mesh.interior_vertex((ends[0] + ends[1]) * 0.5);
-        mesh.split_vertices += 1;
-        self.middles.push((name, vertex));
-        Some(Corner { vertex, planes })
+        Some(Corner {
+            vertex,
+            planes,
+            affine,
+        })
     }
 
     /// A mesh vertex that only pieces of this polygon use.
@@ -219,15 +235,24 @@ impl VertexNamer {
         polygon: &LeafPolygon<'_>,
         vertex: u32,
         mesh: &mut MeshBuilder,
-    ) -> u32 {
+    ) -> Corner {
         let key = (vertex, polygon.own as u16);
-        if let Some((_, found)) = self.local.iter().find(|(k, _)| *k == key) {
-            return *found;
+        let planes = polygon.arrangement.vertex(vertex).planes;
+        let affine = polygon.leaf.affine_position(planes);
+        let known = self.local.iter().find(|(k, _)| *k == key);
+        let created = known.map_or_else(
+            || mesh.interior_vertex(polygon.leaf.position(planes, &mut self.snapper)),
+            |(_, found)| *found,
+        );
+        if known.is_none() {
+            self.local.push((key, created));
+            mesh.note_home(created, affine);
         }
-        let name = polygon.arrangement.vertex(vertex).planes;
-        let created = mesh.interior_vertex(polygon.leaf.position(name, &mut self.snapper));
-        self.local.push((key, created));
-        created
+        Corner {
+            vertex: created,
+            planes,
+            affine,
+        }
     }
 }
 

@@ -10,9 +10,11 @@ Usage: self_intersections.py FILE...    prints a JSON list, one object a file, i
     allowed    2^-40 of the file's coordinates: what rounding of positions may do
     where      a corner of the pair that is deepest in each other, None without contacts
 
-Solids that touch have contacts of depth zero. The least move that separates two triangles is
+Solids that touch have contacts of depth zero, also face to face; a face that folds over itself
+has two layers that look the same way. The least move that separates two triangles is
 along a normal of either or across an edge of each; of triangles in one plane, across an edge
-within that plane.
+within that plane; of triangles no wider than `allowed`, across their longest edge. A move along
+any axis at all is an upper bound.
 """
 
 import json
@@ -47,14 +49,18 @@ def depths(first, second, allowed):
     lengths = [np.linalg.norm(e, axis=2) for e in edges]
     scale = (lengths[0][:, :, None] * lengths[1][:, None, :]).reshape(len(first), 9, 1)
     across = np.where(np.linalg.norm(across, axis=2, keepdims=True) > 1e-9 * scale, across, 0.0)
-    axes = np.concatenate([np.stack(units, axis=1), normalized(across)], axis=1)
-    depth = move_along(axes, first, second)
+    longest = [e[np.arange(len(e)), n.argmax(1)] for e, n in zip(edges, lengths)]
+    beside = [np.cross(e[:, None], np.eye(3)[None]) for e in longest]
+    axes = [np.stack(units, axis=1), normalized(across), *map(normalized, beside)]
+    depth = move_along(np.concatenate(axes, axis=1), first, second)
     # In one plane the normals separate nothing that overlaps.
     height = np.abs(np.einsum("ncx,nx->nc", second - first[:, :1], units[0])).max(axis=1)
-    flat = (height <= allowed) & (np.linalg.norm(units[0], axis=1) > 0.5)
-    flat &= np.linalg.norm(units[1], axis=1) > 0.5
+    flat = height <= allowed
+    for normal, length in zip(normals, lengths):
+        flat &= np.linalg.norm(normal, axis=1) > allowed * length.max(axis=1)
     within = np.concatenate([normalized(np.cross(units[0][:, None], e)) for e in edges], axis=1)
-    return np.where(flat, move_along(within, first, second), depth)
+    back_to_back = np.einsum("nx,nx->n", *normals) < 0
+    return np.where(flat, np.where(back_to_back, 0.0, move_along(within, first, second)), depth)
 
 
 def inspect(path):

@@ -28,6 +28,30 @@ pub(crate) struct ManifoldReport {
     pub(crate) error: Option<String>,
 }
 
+/// What CGAL says about a file; `tests/python/self_intersections.py` explains the fields.
+#[derive(Clone, PartialEq, Debug, Deserialize)]
+pub(crate) struct IntersectionReport {
+    pub(crate) file: PathBuf,
+    /// Pairs of triangles that touch or cross.
+    pub(crate) contacts: usize,
+    /// Those that cross by more than rounding of positions.
+    pub(crate) crossings: usize,
+    pub(crate) depth: f64,
+    pub(crate) allowed: f64,
+    /// `None` without contacts.
+    #[serde(rename = "where")]
+    pub(crate) place: Option<[f64; 3]>,
+}
+
+/// Lets CGAL look for crossing triangles in OBJ files; reports are in the order of the paths.
+pub(crate) fn intersection_report<P: AsRef<Path>>(paths: &[P]) -> Vec<IntersectionReport> {
+    let script = Path::new(ROOT).join("tests/python/self_intersections.py");
+    let mut command = Command::new(validators());
+    command.arg(script).args(paths.iter().map(AsRef::as_ref));
+    let output = run(&mut command, "the validators cannot be run");
+    serde_json::from_slice(&output.stdout).expect("the validators print JSON")
+}
+
 /// Lets the Manifold library check OBJ and GLB files; reports are in the order of the paths.
 pub(crate) fn manifold_report<P: AsRef<Path>>(paths: &[P]) -> Vec<ManifoldReport> {
     let script = Path::new(ROOT).join("tests/python/validate.py");
