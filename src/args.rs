@@ -273,6 +273,8 @@ pub(crate) enum Criterion {
     Bezier,
     /// By Rivlin's sharper bound
     Rivlin,
+    /// By the largest gradient
+    Lipschitz,
 }
 
 /// Which facets planar faces have.

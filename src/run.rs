@@ -105,6 +105,7 @@ impl Job {
             criterion: match args.criterion {
                 args::Criterion::Bezier => subdiv::Criterion::Bezier,
                 args::Criterion::Rivlin => subdiv::Criterion::Rivlin,
+                args::Criterion::Lipschitz => subdiv::Criterion::Lipschitz,
             },
             mesh: args.mesh,
             threads: args.threads.map(usize::from),
@@ -152,6 +153,7 @@ impl Job {
             max_level: self.max_level,
             criterion: match self.criterion {
                 subdiv::Criterion::Rivlin => "rivlin",
+                subdiv::Criterion::Lipschitz => "lipschitz",
                 subdiv::Criterion::Bezier => "bezier",
             },
             mesh: match self.mesh {

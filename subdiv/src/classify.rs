@@ -1,6 +1,7 @@
 //! Where a polynomial keeps its sign in a simplex (thesis 4.4).
 
 use crate::bernstein::for_each_index;
+use crate::lipschitz;
 use csg::Ternary;
 
 /// How the range of a polynomial in a simplex is bounded.
@@ -11,6 +12,8 @@ pub enum Criterion {
     Bezier,
     /// The same, sharpened where one coefficient alone spoils the sign (Rivlin, thesis 4.4.3).
     Rivlin,
+    /// By its value at the barycentre and the largest gradient (thesis 4.4.1).
+    Lipschitz,
 }
 
 /// A primitive in a simplex.
@@ -22,10 +25,12 @@ pub(crate) struct Class {
     pub largest: f64,
 }
 
-/// Classifies against `p ≤ 0`; `error` bounds the absolute error of the coefficients.
+/// Classifies against `p ≤ 0` in a simplex of type `kind`; `error` bounds the absolute error of
+/// the coefficients.
 #[must_use]
 pub(crate) fn classify(
     criterion: Criterion,
+    kind: u8,
     degree: usize,
     coefficients: &[f64],
     error: f64,
@@ -43,13 +48,15 @@ pub(crate) fn classify(
                 (low.min(*c), high.max(*c))
             }),
     };
-    let value = if low > error {
+    let value = if criterion == Criterion::Lipschitz {
+        lipschitz::classify(kind, degree, coefficients, error)
+    } else if low > error {
         Ternary::Out
     } else if high < -error {
         Ternary::In
     } else {
         match criterion {
-            Criterion::Bezier => Ternary::Unknown,
+            Criterion::Bezier | Criterion::Lipschitz => Ternary::Unknown,
             Criterion::Rivlin => by_rivlin(degree, coefficients, error),
         }
     };
@@ -124,13 +131,13 @@ mod tests {
         /// One suite for all criteria: never `Out` or `In` where a sample says otherwise.
         #[test]
         fn classification_is_sound(
-            rivlin: bool, degree in 1usize..6, shift in -1.0..1.0f64,
+            name in 0usize..3, kind in 0u8..3, degree in 1usize..6, shift in -1.0..1.0f64,
             seed in proptest::collection::vec(-1.0..1.0f64, 56),
             samples in proptest::collection::vec(proptest::array::uniform4(0.0..1.0f64), 20),
         ) {
-            let criterion = if rivlin { Criterion::Rivlin } else { Criterion::Bezier };
+            let criterion = [Criterion::Bezier, Criterion::Rivlin, Criterion::Lipschitz][name];
             let c: Vec<f64> = seed[..count(degree)].iter().map(|x| x + shift).collect();
-            let class = classify(criterion, degree, &c, 1e-12).value;
+            let class = classify(criterion, kind, degree, &c, 1e-12).value;
             for b in samples {
                 let sum = b.iter().sum::<f64>().max(1e-9);
                 let value = evaluate(degree, &c, b.map(|x| x / sum));
@@ -148,7 +155,7 @@ mod tests {
     fn rivlin_decides_more_than_bezier() {
         let mut c = vec![1.0; 10];
         c[3] = -0.4;
-        let by = |criterion| classify(criterion, 2, &c, 0.0).value;
+        let by = |criterion| classify(criterion, 0, 2, &c, 0.0).value;
         assert_eq!(by(Criterion::Bezier), Ternary::Unknown);
         assert_eq!(by(Criterion::Rivlin), Ternary::Out);
     }

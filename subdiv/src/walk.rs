@@ -190,7 +190,7 @@ impl Walker {
                     model_error: root.model_error,
                     largest: 0.0,
                 };
-                let class = classify(self.criterion, root.degree, coefficients, active.error());
+                let class = classify(self.criterion, 0, root.degree, coefficients, active.error());
                 self.values[0][primitive] = class.value;
                 if class.value == Ternary::Unknown {
                     active.largest = class.largest;
@@ -281,7 +281,8 @@ impl Walker {
             for (side, frame) in [&mut *near, &mut *far].into_iter().enumerate() {
                 let start = starts[side];
                 let coefficients = &frame.coefficients[start..];
-                let class = classify(self.criterion, degree, coefficients, child.error());
+                let kind = (kind + 1) % 3;
+                let class = classify(self.criterion, kind, degree, coefficients, child.error());
                 self.values[side][active.primitive as usize] = class.value;
                 if class.value == Ternary::Unknown {
                     child.offset = start as u32;
