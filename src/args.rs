@@ -1,5 +1,6 @@
 //! The command line as it is typed. [`run`](crate::run) turns it into what the program uses.
 
+use crate::thesis::ThesisCommand;
 use crate::values::{Bytes, PictureSize, Tolerance};
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use clap_complete::Shell;
@@ -53,6 +54,9 @@ pub(crate) enum Command {
     View(ViewArgs),
     /// Print what a model consists of, without converting it
     Info(InfoArgs),
+    /// Repeat the programs and experiments of the thesis behind this program
+    #[command(subcommand)]
+    Thesis(ThesisCommand),
     /// Print a script that completes commands and options in a shell
     Completions {
         /// The shell

@@ -18,6 +18,7 @@ mod run;
 mod shell;
 mod summary;
 mod talk;
+mod thesis;
 mod values;
 mod view;
 
@@ -56,6 +57,7 @@ fn dispatch(cli: Cli, talk: Talk) -> Result<(), Failure> {
         Some(Command::Convert(args)) => convert::run(&Conversion::new(args)?, talk),
         Some(Command::View(args)) => view::run(args, talk),
         Some(Command::Info(args)) => info::run(args, talk),
+        Some(Command::Thesis(command)) => thesis::run(command, talk),
         Some(Command::Completions { shell }) => shell::completions(shell),
         Some(Command::Man) => shell::manual(),
     }
