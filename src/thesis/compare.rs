@@ -110,7 +110,9 @@ fn table(solid: &Solid, name: &str, level: u8, halt: Halt) -> String {
         simplices: Some(6 << level),
         evaluations: everything,
         values: run_complete.as_ref().map(|(run, _)| run.values),
-        boundary: run_complete.as_ref().map(|(run, _)| run.found.cells.len() as u64),
+        boundary: run_complete
+            .as_ref()
+            .map(|(run, _)| run.found.cells.len() as u64),
         in_vain: None,
         seconds: run_complete.as_ref().map(|(_, seconds)| *seconds),
     };
@@ -126,7 +128,9 @@ fn table(solid: &Solid, name: &str, level: u8, halt: Halt) -> String {
         simplices: Some(cells),
         evaluations: cells * primitives,
         values: run_continuation.as_ref().map(|(run, _)| run.values),
-        boundary: run_continuation.as_ref().map(|(run, _)| run.found.cells.len() as u64),
+        boundary: run_continuation
+            .as_ref()
+            .map(|(run, _)| run.found.cells.len() as u64),
         in_vain: None,
         seconds: run_continuation.as_ref().map(|(_, seconds)| *seconds),
     };

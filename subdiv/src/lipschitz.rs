@@ -91,14 +91,20 @@ mod tests {
         let mut decided = [0; 2];
         for offset in [-0.4, -0.1, 0.05, 0.2, 0.45, 0.7] {
             let polynomial = Polynomial::affine(normal, offset).unwrap();
-            let primitive = Primitive { polynomial, coefficient_error: 0.0 };
+            let primitive = Primitive {
+                polynomial,
+                coefficient_error: 0.0,
+            };
             let roots = RootCoefficients::new(&primitive).roots;
             let mut layer: Vec<_> = Simplex::roots().into_iter().zip(roots).collect();
             for _ in 0..7 {
                 for (simplex, c) in &layer {
                     let corners = simplex.vertices.map(crate::lattice::Point::position);
                     let middle = corners.iter().sum::<DVec3>() / 4.0;
-                    let radius = corners.iter().map(|v| v.distance(middle)).fold(0.0, f64::max);
+                    let radius = corners
+                        .iter()
+                        .map(|v| v.distance(middle))
+                        .fold(0.0, f64::max);
                     let distance = normal.dot(middle) - offset;
                     if (distance.abs() - radius).abs() < 1e-9 {
                         continue;

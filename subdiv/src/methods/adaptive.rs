@@ -84,14 +84,16 @@ struct Count {
 impl Visitor for Count {
     fn visit(&mut self, simplex: &Simplex, frame: &Frame) -> bool {
         self.close(simplex.level);
-        let is_leaf = simplex.level == self.level
-            || self.halt == Halt::AtPlanes && is_plane(frame);
+        let is_leaf = simplex.level == self.level || self.halt == Halt::AtPlanes && is_plane(frame);
         if is_leaf {
             self.leaf(simplex, frame);
         } else {
             self.bisection(frame);
             let level = simplex.level;
-            self.open.push(Open { level, found: false });
+            self.open.push(Open {
+                level,
+                found: false,
+            });
         }
         !is_leaf
     }

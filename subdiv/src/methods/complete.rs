@@ -81,11 +81,7 @@ impl Vertices {
 }
 
 /// Whether each primitive is ≤ 0 at a vertex of the grid, 64 to a word.
-pub(super) fn inside(
-    solid: &Solid,
-    vertex: [u32; 3],
-    halvings: u8,
-) -> impl Iterator<Item = u64> {
+pub(super) fn inside(solid: &Solid, vertex: [u32; 3], halvings: u8) -> impl Iterator<Item = u64> {
     let shift = LATTICE_BITS - u32::from(halvings);
     let point = Point::new(vertex.map(|c| c << shift)).position();
     solid.primitives.chunks(64).map(move |chunk| {

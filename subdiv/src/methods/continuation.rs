@@ -33,12 +33,7 @@ pub struct Continuation {
 /// Follows the boundary through a grid of `2^halvings` cubes a side, from each of the seeds that
 /// was not reached before; seeds that are not simplices of the grid are passed over.
 #[must_use]
-pub fn continuation(
-    solid: &Solid,
-    halvings: u8,
-    pattern: Pattern,
-    seeds: &[Cell],
-) -> Continuation {
+pub fn continuation(solid: &Solid, halvings: u8, pattern: Pattern, seeds: &[Cell]) -> Continuation {
     let mut run = Run {
         solid,
         halvings,
@@ -165,7 +160,9 @@ impl Path {
 
     fn cell(&self, halvings: u8) -> Cell {
         let shift = LATTICE_BITS - u32::from(halvings);
-        let mut cell = self.vertices().map(|v| v.map(|c| c.unsigned_abs() << shift));
+        let mut cell = self
+            .vertices()
+            .map(|v| v.map(|c| c.unsigned_abs() << shift));
         cell.sort_unstable();
         cell
     }

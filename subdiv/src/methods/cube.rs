@@ -66,7 +66,9 @@ impl Pattern {
     pub(super) fn mirrors(self, cube: [u32; 3]) -> u8 {
         match self {
             Self::Translated => 0,
-            Self::Reflected | Self::Five => (0..3).map(|axis| (!cube[axis] as u8 & 1) << axis).sum(),
+            Self::Reflected | Self::Five => {
+                (0..3).map(|axis| (!cube[axis] as u8 & 1) << axis).sum()
+            }
         }
     }
 

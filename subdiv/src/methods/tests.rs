@@ -55,7 +55,12 @@ fn continuation_needs_a_seed_for_each_component() {
     let all = continuation(&solid, 4, Pattern::Reflected, &whole.cells);
     assert_eq!(all.components, 2);
     let one = continuation(&solid, 4, Pattern::Reflected, &whole.cells[..1]);
-    let other = continuation(&solid, 4, Pattern::Reflected, &whole.cells[whole.cells.len() - 1..]);
+    let other = continuation(
+        &solid,
+        4,
+        Pattern::Reflected,
+        &whole.cells[whole.cells.len() - 1..],
+    );
     assert_eq!((one.components, other.components), (1, 1));
     let together = one.found.cells.len() + other.found.cells.len();
     assert_eq!(together, whole.cells.len());
@@ -68,13 +73,20 @@ fn continuation_needs_a_seed_for_each_component() {
 #[test]
 fn stopping_at_planes_saves_work_only() {
     let mut model = ModelBuilder::new();
-    let block = model.add(Node::Shape(Shape::block(DVec3::splat(-1.0), DVec3::ONE).unwrap()));
+    let block = model.add(Node::Shape(
+        Shape::block(DVec3::splat(-1.0), DVec3::ONE).unwrap(),
+    ));
     let ball = ball(&mut model, DVec3::ONE, 0.7);
     let root = model.add(Node::Difference(vec![block, ball]));
     let solid = Solid::build(&model.finish(root), None).unwrap();
     let full = adaptive(&solid, Criterion::Rivlin, 15, Halt::Never);
     let early = adaptive(&solid, Criterion::Rivlin, 15, Halt::AtPlanes);
-    assert!(3 * early.simplices < full.simplices, "{} {}", early.simplices, full.simplices);
+    assert!(
+        3 * early.simplices < full.simplices,
+        "{} {}",
+        early.simplices,
+        full.simplices
+    );
 }
 
 /// Rivlin's bound is sharper than Bézier's by its proof; Lipschitz' is known to be loose.
@@ -89,7 +101,11 @@ fn criteria_are_ordered_by_what_they_bisect_in_vain() {
 /// tetrahedron on the wall of the grid and in two elsewhere.
 #[test]
 fn patterns_are_triangulations() {
-    for (pattern, count) in [(Pattern::Translated, 6), (Pattern::Reflected, 6), (Pattern::Five, 5)] {
+    for (pattern, count) in [
+        (Pattern::Translated, 6),
+        (Pattern::Reflected, 6),
+        (Pattern::Five, 5),
+    ] {
         let side = 3;
         let mut facets: BTreeMap<Vec<[u32; 3]>, u32> = BTreeMap::new();
         let mut six_volumes = 0;
@@ -134,7 +150,11 @@ fn pivots_exchange_one_vertex() {
             let own: BTreeSet<_> = simplex.vertices().into();
             for without in 0..4 {
                 let neighbour = simplex.pivot(without);
-                let shared = neighbour.vertices().into_iter().filter(|v| own.contains(v)).count();
+                let shared = neighbour
+                    .vertices()
+                    .into_iter()
+                    .filter(|v| own.contains(v))
+                    .count();
                 assert_eq!(shared, 3);
                 assert!(!neighbour.vertices().contains(&simplex.vertices()[without]));
                 let back: Vec<_> = (0..4).map(|w| neighbour.pivot(w)).collect();
