@@ -82,7 +82,7 @@ struct Count {
 }
 
 impl Visitor for Count {
-    fn visit(&mut self, simplex: &Simplex, frame: &Frame) -> bool {
+    fn visit(&mut self, simplex: &Simplex, frame: &mut Frame) -> bool {
         self.close(simplex.level);
         let is_leaf = simplex.level == self.level || self.halt == Halt::AtPlanes && is_plane(frame);
         if is_leaf {
