@@ -29,6 +29,7 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
+mod curve;
 mod error;
 mod euler;
 mod geometry;
@@ -48,6 +49,7 @@ pub mod simplify;
 #[cfg(test)]
 mod samples;
 
+pub use curve::{Curve, Curves, EdgeCurve, Piece};
 pub use error::Error;
 pub use euler::EulerCharacteristic;
 pub use group::{Edge, Face, FaceId, Groups};
