@@ -35,10 +35,13 @@ pub(crate) struct Planes<'a> {
 }
 
 /// A vertex of the arrangement.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 pub(crate) struct ArrangementVertex {
     /// The three planes, ascending.
     pub planes: [u16; 3],
+    /// Their [`support`].
+    rows: Indices,
+    columns: Indices,
     /// Sign that makes its homogeneous barycentric coordinates positive.
     normalization: Sign,
 }
@@ -213,6 +216,8 @@ impl Arrangement {
         let normalization = normalization(planes, &rows, &columns);
         self.vertices.push(ArrangementVertex {
             planes: name,
+            rows,
+            columns,
             normalization,
         });
         self.cut_sign.push((0, Sign::Positive));
@@ -227,17 +232,18 @@ impl Arrangement {
             return known;
         }
         let ArrangementVertex {
-            planes: name,
+            rows,
+            columns,
             normalization,
-        } = self.vertices[vertex as usize];
-        let (rows, columns) = support(name);
-        let mut minor = select(planes, &rows, &columns);
+            ..
+        } = &self.vertices[vertex as usize];
+        let mut minor = select(planes, rows, columns);
         minor.order += 1;
         minor.rows[minor.order - 1] = planes.primitives[other];
         for (at, &column) in columns.iter().enumerate() {
             minor.entries[minor.order - 1][at] = planes.values[other][column];
         }
-        let sign = minor_sign(&minor).times(normalization);
+        let sign = minor_sign(&minor).times(*normalization);
         self.cut_sign[vertex as usize] = (self.cut, sign);
         sign
     }

@@ -33,6 +33,7 @@ pub(crate) struct Extractor {
     complex: CellComplex,
     vertices: VertexNamer,
     ring: Vec<Corner>,
+    boundary: Vec<u32>,
     triangulator: PieceTriangulator,
 }
 
@@ -156,7 +157,8 @@ impl Extractor {
         label: Label,
         mesh: &mut MeshBuilder,
     ) {
-        if let Some(boundary) = complex.simple_boundary() {
+        let mut boundary = std::mem::take(&mut self.boundary);
+        if complex.is_simple(&mut boundary) {
             self.ring.clear();
             for &edge in &boundary {
                 let side = complex.side(edge, polygon.arrangement);
@@ -168,6 +170,7 @@ impl Extractor {
         } else {
             self.extract_cells(polygon, complex, label, mesh);
         }
+        self.boundary = boundary;
     }
 
     /// A piece with holes or one that touches itself: each of its cells alone.

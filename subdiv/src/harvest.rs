@@ -27,6 +27,8 @@ pub(crate) struct Cut<'a> {
     pub(crate) splits: Option<&'a FxHashSet<Point>>,
     /// What the first traversal decided in each sector.
     pub(crate) trails: &'a [Trail],
+    /// Whether leaves that fail the topological rule are listed instead of bisected.
+    pub(crate) is_last: bool,
 }
 
 /// Extracts the boundary in those sectors whose harvest is missing.
@@ -68,6 +70,7 @@ pub(crate) fn extract(
                     trail: cut.trails.get(at).filter(|_| plan.topology),
                     step: Step::default(),
                     untested_below: None,
+                    is_last: cut.is_last,
                     topology,
                     harvest: Harvest::new(&sector.simplex),
                     doubts: Vec::new(),
@@ -154,6 +157,7 @@ struct Harvester<'a> {
     /// Level of the accepted simplex that is bisected all the same: what is below was never
     /// tested.
     untested_below: Option<u8>,
+    is_last: bool,
     topology: &'a mut TopologyRule,
     harvest: Harvest,
     /// Where leaves that only the closure made must be bisected.
@@ -243,7 +247,7 @@ impl Harvester<'_> {
             frame.prune(pruning, &mut self.pruned, self.scratch);
             return false;
         };
-        if simplex.level < self.plan.max_level {
+        if simplex.level < self.plan.max_level && !self.is_last {
             self.doubts.push(simplex.midpoint());
             return true;
         }
@@ -275,6 +279,10 @@ impl Visitor for Harvester<'_> {
         }
         self.harvest.leaves += 1;
         self.harvest.deepest_level = self.harvest.deepest_level.max(simplex.level);
+        if !self.doubts.is_empty() {
+            // The subtree will be traversed again: only the rest of the tests matters.
+            return false;
+        }
         if let Err(LeafError::TooManyPrimitives(count)) = self.extract(simplex, frame) {
             let p = self
                 .plan

@@ -1,5 +1,6 @@
 //! The formula of one leaf, over the few primitives that cross it.
 
+use crate::patterns::{CROWD, Patterns};
 use csg::{
     FormulaNode, Literal, LocalizeScratch, MaterialId, PrimitiveId, Sense, Ternary, localize,
 };
@@ -9,9 +10,6 @@ pub(crate) type Pattern = u128;
 
 /// Most primitives that one leaf can arrange.
 pub(crate) const MAX_LEAF_PRIMITIVES: usize = 128;
-
-/// Up to this many primitives all values are tabulated.
-const TABULATED: usize = 6;
 
 /// What a piece of a primitive's zero set is to the solid.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
@@ -30,7 +28,9 @@ pub(crate) struct LeafFormula {
     pub primitives: Vec<u32>,
     /// The only material of each local primitive's literals, if it is one only.
     single_material: Vec<Option<MaterialId>>,
-    table: u64,
+    /// All values, for as many primitives as patterns have.
+    table: Patterns,
+    open: Vec<(usize, Patterns)>,
     scratch: LocalizeScratch,
     none: Vec<FormulaNode>,
 }
@@ -72,13 +72,8 @@ impl LeafFormula {
                 ..literal
             }));
         }
-        self.table = 0;
-        if self.primitives.len() <= TABULATED {
-            for pattern in 0u64..1 << self.primitives.len() {
-                let inside = |local: usize| pattern >> local & 1 == 1;
-                let inside = evaluate(&self.nodes, inside, &mut self.none, &mut self.scratch);
-                self.table |= u64::from(inside) << pattern;
-            }
+        if self.primitives.len() <= CROWD {
+            self.table = Patterns::of_formula(&self.nodes, |local| local as usize, &mut self.open);
         }
     }
 
@@ -90,8 +85,8 @@ impl LeafFormula {
 
     /// Whether a region with this pattern lies inside the solid.
     pub(crate) fn value(&mut self, pattern: Pattern) -> bool {
-        if self.primitives.len() <= TABULATED {
-            self.table >> (pattern as u64) & 1 == 1
+        if self.primitives.len() <= CROWD {
+            self.table.holds(pattern as u8)
         } else {
             let inside = |local: usize| pattern >> local & 1 == 1;
             evaluate(&self.nodes, inside, &mut self.none, &mut self.scratch)

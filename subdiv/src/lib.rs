@@ -51,6 +51,7 @@ mod limits;
 mod lipschitz;
 mod mesh;
 pub mod methods;
+mod patterns;
 mod pieces;
 mod polygon;
 mod predicates;

@@ -107,17 +107,18 @@ impl CellComplex {
         self.labels[self.half_edges[self.scan].cell as usize]
     }
 
-    /// The component's boundary, if it is one loop that passes no vertex twice.
-    pub(crate) fn simple_boundary(&self) -> Option<Vec<u32>> {
+    /// Finds the component's boundary; whether it is one loop that passes no vertex twice.
+    pub(crate) fn is_simple(&self, boundary: &mut Vec<u32>) -> bool {
         let mut edges = self.component.iter().filter(|e| self.is_boundary(**e));
-        let first = *edges.next()?;
-        let boundary = self.trace(first);
-        let simple = boundary.len() == edges.count() + 1
+        let Some(&first) = edges.next() else {
+            return false;
+        };
+        self.trace(first, boundary);
+        boundary.len() == edges.count() + 1
             && boundary.iter().enumerate().all(|(at, a)| {
                 let from = |e: u32| self.half_edges[e as usize].from;
                 boundary[..at].iter().all(|b| from(*a) != from(*b))
-            });
-        simple.then_some(boundary)
+            })
     }
 
     /// All boundary loops of the component.
@@ -125,7 +126,9 @@ impl CellComplex {
         let mut loops: Vec<Vec<u32>> = Vec::new();
         for &edge in self.component.iter().filter(|e| self.is_boundary(**e)) {
             if !loops.iter().any(|known| known.contains(&edge)) {
-                loops.push(self.trace(edge));
+                let mut boundary = Vec::new();
+                self.trace(edge, &mut boundary);
+                loops.push(boundary);
             }
         }
         loops
@@ -157,8 +160,9 @@ impl CellComplex {
     }
 
     /// The boundary half-edges that follow each other around the component, from `first`.
-    fn trace(&self, first: u32) -> Vec<u32> {
-        let mut edges = vec![first];
+    fn trace(&self, first: u32, edges: &mut Vec<u32>) {
+        edges.clear();
+        edges.push(first);
         let mut at = first;
         loop {
             at = self.half_edges[at as usize].next;
@@ -166,7 +170,7 @@ impl CellComplex {
                 at = self.half_edges[twin as usize].next;
             }
             if at == first {
-                return edges;
+                return;
             }
             edges.push(at);
         }

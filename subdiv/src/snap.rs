@@ -115,6 +115,11 @@ impl Snapper {
 
     /// Value at barycentric coordinates `b` and the four partial derivatives by them.
     fn evaluate(&mut self, p: LeafPolynomial<'_>, b: [f64; 4]) -> (f64, [f64; 4]) {
+        if let Some(c) = p.coefficients.first_chunk::<10>()
+            && p.degree == 2
+        {
+            return quadric(c, b);
+        }
         let c = &mut self.triangle;
         c.clear();
         c.extend_from_slice(p.coefficients);
@@ -174,6 +179,14 @@ impl Snapper {
         }
         (last_step <= 1e-12 && b.iter().all(|x| *x >= 0.0)).then_some(b)
     }
+}
+
+/// The same for degree 2, written out: in most leaves most surfaces are quadrics or planes.
+fn quadric(c: &[f64; 10], b: [f64; 4]) -> (f64, [f64; 4]) {
+    let rows = [[0, 1, 2, 3], [1, 4, 5, 6], [2, 5, 7, 8], [3, 6, 8, 9]];
+    let half = rows.map(|[i, j, k, l]| b[0] * c[i] + b[1] * c[j] + b[2] * c[k] + b[3] * c[l]);
+    let value = (0..4).map(|v| b[v] * half[v]).sum();
+    (value, half.map(|h| 2.0 * h))
 }
 
 /// The root in (0, 1) of a quadratic Bernstein form whose ends have strictly opposite signs.

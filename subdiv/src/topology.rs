@@ -11,25 +11,24 @@
 //! * The domain's walls: the formula is decided there (`walls`).
 //!
 //! Only surfaces on which the formula really depends together are tested, given the sign
-//! patterns that were proved not to occur (`patterns`).
+//! patterns that were proved not to occur (`crate::patterns`).
 
 mod combination;
 pub(crate) mod kindred;
 mod pairs;
-mod patterns;
 mod quadruples;
 mod surface;
 mod triples;
 mod walls;
 
 use crate::convert::Plan;
+use crate::patterns::{CROWD, Patterns};
 use crate::settings::Reason;
 use crate::simplex::Simplex;
 use crate::walk::{Frame, Pruning};
 use arrayvec::ArrayVec;
 use csg::{FormulaNode, LocalizeScratch};
 use kindred::Kin;
-use patterns::{CROWD, Patterns};
 use surface::{Cone, LeafFrame, Surface};
 
 /// Tests leaves; holds only work space between them.

@@ -4,7 +4,7 @@
 //! The same combination of the interpolants has the same sign, since its vertex values are among
 //! the coefficients, and so has that of everything between.
 
-use crate::topology::patterns::{CROWD, Patterns};
+use crate::patterns::{CROWD, Patterns};
 use crate::topology::surface::Surface;
 use arrayvec::ArrayVec;
 use glam::DVec3;

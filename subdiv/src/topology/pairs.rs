@@ -1,8 +1,8 @@
 //! Two surfaces in a leaf: they cross transversally, or they are apart.
 
+use crate::patterns::Patterns;
 use crate::topology::combination::{Combination, excluded, nearest};
 use crate::topology::kindred::Kin;
-use crate::topology::patterns::Patterns;
 use crate::topology::surface::{Cone, Surface};
 use glam::DVec3;
 

@@ -1,7 +1,7 @@
 //! Four surfaces in a leaf: in general they have no common point, and a combination shows it.
 
+use crate::patterns::Patterns;
 use crate::topology::combination::{Combination, excluded};
-use crate::topology::patterns::Patterns;
 use crate::topology::surface::Surface;
 use glam::{DMat4, DVec4};
 

@@ -1,7 +1,7 @@
 //! Three surfaces in a leaf: their normals are independent, or they have no common point.
 
+use crate::patterns::Patterns;
 use crate::topology::combination::{Combination, excluded, nearest};
-use crate::topology::patterns::Patterns;
 use crate::topology::surface::{Cone, Surface};
 use glam::DVec3;
 

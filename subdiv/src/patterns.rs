@@ -7,11 +7,12 @@
 
 use csg::{FormulaNode, Sense};
 
-/// Most primitives of a leaf that the topological rule accepts.
+/// Most primitives that a pattern here describes: those of a leaf that the topological rule
+/// accepts, and whose formula is tabulated.
 pub(crate) const CROWD: usize = 8;
 
 /// A set of sign patterns.
-#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+#[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
 pub(crate) struct Patterns([u64; 4]);
 
 /// Within a word, the patterns with primitive 0 ‥ 5 inside.
@@ -29,6 +30,12 @@ impl Patterns {
     pub(crate) const NONE: Self = Self([0; 4]);
     /// All patterns.
     pub(crate) const ALL: Self = Self([u64::MAX; 4]);
+
+    /// Whether a pattern is in the set.
+    #[must_use]
+    pub(crate) fn holds(self, pattern: u8) -> bool {
+        self.0[usize::from(pattern >> 6)] >> (pattern & 63) & 1 == 1
+    }
 
     /// Those with this primitive inside.
     #[must_use]
@@ -167,12 +174,6 @@ mod tests {
     use csg::{Literal, MaterialId, PrimitiveId};
     use proptest::prelude::*;
 
-    impl Patterns {
-        fn holds(self, pattern: usize) -> bool {
-            self.0[pattern / 64] >> (pattern % 64) & 1 == 1
-        }
-    }
-
     #[derive(Clone, Debug)]
     enum Tree {
         Leaf(u32, bool),
@@ -229,8 +230,8 @@ mod tests {
             let mut nodes = Vec::new();
             flatten(&t, &mut nodes);
             let set = Patterns::of_formula(&nodes, |p| p as usize, &mut Vec::new());
-            for pattern in 0..256 {
-                prop_assert_eq!(set.holds(pattern), value(&t, pattern));
+            for pattern in 0..=255u8 {
+                prop_assert_eq!(set.holds(pattern), value(&t, usize::from(pattern)));
             }
         }
 
@@ -242,8 +243,9 @@ mod tests {
             let set = Patterns::of_formula(&nodes, |p| p as usize, &mut Vec::new());
             let feasible = Patterns(words).union(Patterns(more));
             let members: Vec<usize> = (0..8).filter(|b| chosen >> b & 1 == 1).collect();
-            let expected = (0..256usize).filter(|p| p & chosen == 0).any(|others| {
-                let own: Vec<usize> = (0..256).filter(|p| p & !chosen == others).collect();
+            let chosen = u8::try_from(chosen).unwrap();
+            let expected = (0..=255u8).filter(|p| p & chosen == 0).any(|others| {
+                let own: Vec<u8> = (0..=255).filter(|p| p & !chosen == others).collect();
                 own.iter().all(|p| feasible.holds(*p))
                     && members.iter().all(|b| own.iter().any(|p| set.holds(*p) != set.holds(p ^ 1 << b)))
             });
