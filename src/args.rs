@@ -158,7 +158,7 @@ pub(crate) struct ModelArgs {
         help_heading = "Precision"
     )]
     pub(crate) criterion: Criterion,
-    /// Which facets planar faces have
+    /// Where facets come from
     #[arg(
         long,
         value_name = "KIND",
@@ -281,10 +281,12 @@ pub(crate) enum Criterion {
     Lipschitz,
 }
 
-/// Which facets planar faces have.
+/// Where facets come from.
 #[derive(ValueEnum, Clone, Copy, PartialEq, Eq, Debug)]
 pub(crate) enum MeshKind {
-    /// Triangles between the vertices of their edges
+    /// From the true surfaces: as few as the tolerance asks for, after the topology is proved
+    Surfaces,
+    /// Those of the subdivision; planar faces have triangles between their edges only
     Merged,
     /// Those of the subdivision, one or more in each leaf
     Leaves,

@@ -37,27 +37,7 @@ pub(crate) fn run(
     drop(loaded);
     report.add_solid(&solid);
 
-    let fragments = subdivide(&solid, job, progress, report)?;
-    stop_if_interrupted()?;
-
-    progress.begin("stitching");
-    let brep = report.timed("stitching", || stitch(&fragments))?;
-    drop(fragments);
-    stop_if_interrupted()?;
-
-    let brep = match job.mesh {
-        MeshKind::Leaves => {
-            report.counts.leaf_facets = brep.facet_count() as u64;
-            brep
-        }
-        MeshKind::Merged => {
-            progress.begin("merging");
-            let (brep, counts) = report.timed("merging", || merge(brep, &solid));
-            report.add_merging(&counts);
-            stop_if_interrupted()?;
-            brep
-        }
-    };
+    let brep = mesh(&solid, job, talk, progress, report)?;
 
     progress.begin("measuring");
     let (groups, shells, properties) = report.timed("measuring", || {
@@ -65,6 +45,67 @@ pub(crate) fn run(
     });
     report.add_boundary(&brep, &groups, &shells, &properties);
     Ok(Boundary { brep, solid })
+}
+
+/// The boundary, with the facets that were asked for.
+fn mesh(
+    solid: &Solid,
+    job: &Job,
+    talk: Talk,
+    progress: &Progress,
+    report: &mut Report,
+) -> Result<Valid<Brep>, Failure> {
+    let rule = job.rule(solid.extent.diagonal());
+    if job.mesh == MeshKind::Surfaces
+        && let Rule::Tolerance(tolerance) | Rule::Topology { finest: tolerance } = rule
+    {
+        let coarse = subdivided(
+            solid,
+            job,
+            Rule::Topology { finest: tolerance },
+            progress,
+            report,
+        )?;
+        progress.begin("tessellation");
+        let tessellated = report.timed("tessellation", || {
+            brep::tessellate(&coarse, solid, tolerance)
+        });
+        stop_if_interrupted()?;
+        if let Some((brep, counts)) = tessellated {
+            report.add_tessellation(&counts);
+            return Ok(brep);
+        }
+        let warning = "some faces cannot be tessellated from their surfaces at this tolerance: \
+                       the facets are those of the subdivision";
+        talk.warn(warning);
+        report.warnings.push(warning.to_owned());
+    }
+    let brep = subdivided(solid, job, rule, progress, report)?;
+    if job.mesh == MeshKind::Leaves {
+        report.counts.leaf_facets = brep.facet_count() as u64;
+        return Ok(brep);
+    }
+    progress.begin("merging");
+    let (brep, counts) = report.timed("merging", || merge(brep, solid));
+    report.add_merging(&counts);
+    stop_if_interrupted()?;
+    Ok(brep)
+}
+
+/// The boundary with the facets of the subdivision.
+fn subdivided(
+    solid: &Solid,
+    job: &Job,
+    rule: Rule,
+    progress: &Progress,
+    report: &mut Report,
+) -> Result<Valid<Brep>, Failure> {
+    let fragments = subdivide(solid, job, rule, progress, report)?;
+    stop_if_interrupted()?;
+    progress.begin("stitching");
+    let brep = report.timed("stitching", || stitch(&fragments))?;
+    stop_if_interrupted()?;
+    Ok(brep)
 }
 
 fn warn(loaded: &Loaded, talk: Talk, report: &mut Report) {
@@ -77,13 +118,14 @@ fn warn(loaded: &Loaded, talk: Talk, report: &mut Report) {
 fn subdivide(
     solid: &Solid,
     job: &Job,
+    rule: Rule,
     progress: &Progress,
     report: &mut Report,
 ) -> Result<Fragments, Failure> {
     if solid.primitives.is_empty() {
         return Ok(Fragments::default());
     }
-    let settings = job.settings(solid.extent.diagonal());
+    let settings = job.settings(rule);
     if let Rule::Tolerance(tolerance) | Rule::Topology { finest: tolerance } = settings.rule {
         report.settings.tolerance = Some(tolerance);
     }

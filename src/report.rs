@@ -3,7 +3,7 @@
 //! Lengths are in model units, times in seconds. Names are stable within a `schema_version`;
 //! what could not be measured or proved is null.
 
-use brep::{Brep, Groups, Properties, Retriangulated, Shells};
+use brep::{Brep, Groups, Properties, Retriangulated, Shells, Tessellated};
 use serde::Serialize;
 use std::time::Instant;
 
@@ -38,6 +38,9 @@ pub(crate) struct Report {
     pub(crate) centroid: Option<[f64; 3]>,
     /// Largest proved distance between mesh and true boundary over all certified cells.
     pub(crate) proved_distance: Option<f64>,
+    /// Largest distance of a facet from its surface, measured, where facets were taken from the
+    /// surfaces.
+    pub(crate) largest_deviation: Option<f64>,
     /// Whether mesh and true boundary were proved to be connected in the same way.
     pub(crate) proved_topology: bool,
     /// Where nothing is proved; the first of these places.
@@ -104,6 +107,10 @@ pub(crate) struct Counts {
     pub(crate) merged_faces: u64,
     /// Planar faces that were to be merged and could not.
     pub(crate) unmerged_faces: u64,
+    /// Faces whose facets were taken from their surfaces.
+    pub(crate) tessellated_faces: u64,
+    /// B-Rep edges that could not be followed, so that they kept the subdivision's vertices.
+    pub(crate) kept_edges: u64,
     pub(crate) facets: u64,
     pub(crate) vertices: u64,
     pub(crate) brep_faces: u64,
@@ -146,6 +153,7 @@ impl Report {
             volume_interval: None,
             centroid: None,
             proved_distance: None,
+            largest_deviation: None,
             proved_topology: false,
             uncertified: Vec::new(),
             uncertified_count: 0,
@@ -191,6 +199,14 @@ impl Report {
         self.counts.leaf_facets = of.facets_before as u64;
         self.counts.merged_faces = of.faces as u64;
         self.counts.unmerged_faces = of.kept as u64;
+    }
+
+    /// What became of faces that were tessellated from their surfaces.
+    pub(crate) fn add_tessellation(&mut self, of: &Tessellated) {
+        self.counts.leaf_facets = of.facets_before as u64;
+        self.counts.tessellated_faces = of.faces as u64;
+        self.counts.kept_edges = of.kept_edges as u64;
+        self.largest_deviation = Some(of.largest_deviation);
     }
 
     /// What is known about the solid before it is subdivided.

@@ -114,15 +114,19 @@ impl Job {
         })
     }
 
-    /// The settings of a subdivision of a solid whose extent has this diagonal.
-    pub(crate) fn settings(&self, diagonal: f64) -> subdiv::Settings {
-        let rule = match self.precision {
+    /// The rule that was asked for, of a solid whose extent has this diagonal.
+    pub(crate) fn rule(&self, diagonal: f64) -> subdiv::Rule {
+        match self.precision {
             Precision::Level(level) => subdiv::Rule::Level(level),
             Precision::Tolerance(tolerance) => subdiv::Rule::Tolerance(tolerance.length(diagonal)),
             Precision::Topology(finest) => subdiv::Rule::Topology {
                 finest: finest.length(diagonal),
             },
-        };
+        }
+    }
+
+    /// The settings of a subdivision by this rule.
+    pub(crate) fn settings(&self, rule: subdiv::Rule) -> subdiv::Settings {
         subdiv::Settings {
             max_level: self.max_level,
             criterion: self.criterion,
@@ -157,6 +161,7 @@ impl Job {
                 subdiv::Criterion::Bezier => "bezier",
             },
             mesh: match self.mesh {
+                args::MeshKind::Surfaces => "surfaces",
                 args::MeshKind::Merged => "merged",
                 args::MeshKind::Leaves => "leaves",
             },

@@ -44,6 +44,9 @@ fn facts(report: &Report) -> Vec<String> {
             format!("deviation <= {}", rounded_up(distance))
         });
     }
+    if let Some(distance) = report.largest_deviation {
+        facts.push(format!("deviation {} (measured)", rounded_up(distance)));
+    }
     if report.proved_topology {
         facts.push("topology proved".to_owned());
     }

@@ -39,6 +39,7 @@ mod shells;
 mod smooth;
 mod stitch;
 mod sum;
+mod tessellate;
 mod topology;
 mod triangulate;
 mod validate;
@@ -57,6 +58,7 @@ pub use properties::Properties;
 pub use shells::{Shell, ShellId, ShellRole, Shells, Solid};
 pub use smooth::{Corner, CornerId, Corners, Shading};
 pub use stitch::{check_manifold, stitch};
+pub use tessellate::{Tessellated, tessellate};
 pub use topology::{
     Brep, Facet, FacetKey, FacetView, HalfEdge, HalfEdgeKey, HalfEdgeView, Vertex, VertexKey,
     VertexView,

@@ -12,7 +12,9 @@ use crate::stitch::stitch;
 use crate::topology::Brep;
 use crate::validate::Valid;
 use csg::PrimitiveId;
+use glam::DVec3;
 use outline::Outlines;
+use planar::{Outline, Refusal};
 use subdiv::{Fragments, Triangle, VertexKind};
 
 /// What [`retriangulate`] did.
@@ -83,6 +85,23 @@ pub fn retriangulate(
         let dirty = attempt.retreat(&doubled);
         attempt.fill(dirty);
     }
+}
+
+/// Triangles that fill loops of vertices, each with the face to its left seen from where `normal`
+/// points; the loops bound a connected region of a plane.
+pub(crate) fn fill_loops(
+    loops: &[Vec<u32>],
+    positions: &[DVec3],
+    normal: DVec3,
+) -> Result<Vec<[u32; 3]>, Refusal> {
+    let mut outline = Outline::default();
+    for corners in loops {
+        outline.add_loop(corners.iter().copied())?;
+    }
+    // Euler: as many triangles as corners, two more for each loop but the first two.
+    let count = |n: usize| i64::try_from(n).unwrap_or(i64::MAX);
+    let expected = count(outline.len()) + 2 * count(loops.len()) - 4;
+    planar::fill(&outline, positions, normal, expected)
 }
 
 /// Faces filled so far. Each retreat makes less of it, so there are only finitely many.

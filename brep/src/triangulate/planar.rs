@@ -6,7 +6,7 @@ use spade::{ConstrainedDelaunayTriangulation, InsertionError, Point2, Triangulat
 
 /// Why loops were not filled.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
-pub(super) enum Refusal {
+pub(crate) enum Refusal {
     /// A loop of less than three corners.
     ShortLoop,
     /// Two neighbouring corners in one place.
@@ -132,6 +132,15 @@ pub(super) fn fill(
     Ok(triangles)
 }
 
+/// A coordinate as the triangulation takes it: what it calls too small is zero.
+fn coordinate(value: f64) -> f64 {
+    if value.abs() < spade::MIN_ALLOWED_VALUE {
+        0.0
+    } else {
+        value
+    }
+}
+
 /// The different places of an outline's corners in the plane.
 struct Places {
     points: Vec<Point2<f64>>,
@@ -149,10 +158,9 @@ impl Places {
         } else {
             (u, v)
         };
-        // Adding zero makes −0 and 0 one place.
         let projected: Vec<Point2<f64>> = (outline.corners.iter())
             .map(|&vertex| positions[vertex as usize])
-            .map(|p| Point2::new(p[u] + 0.0, p[v] + 0.0))
+            .map(|p| Point2::new(coordinate(p[u]), coordinate(p[v])))
             .collect();
         let mut order: Vec<usize> = (0..projected.len()).collect();
         let key = |at: usize| (projected[at].x, projected[at].y);

@@ -1,0 +1,374 @@
+//! Facets taken from the true surfaces: as few as the tolerance asks for.
+//!
+//! A subdivision knows how faces, edges and vertices are connected; where they lie, the
+//! primitives know better. This stage keeps the connections and forgets the leaves:
+//!
+//! 1. each B-Rep edge gets points on both of its surfaces, spaced evenly by the deviation of
+//!    their chords (`chains`), shared by the faces on both sides;
+//! 2. vertices inside curved faces go where the rest stays within the tolerance, and come, on
+//!    the surface, where it does not (`refine`);
+//! 3. planar faces are filled from their loops (`crate::triangulate`);
+//! 4. triangles that pass through others are looked for, and their faces done more finely
+//!    (`crossings`).
+//!
+//! Everything happens by splitting, flipping and collapsing edges of one closed mesh, so it
+//! stays closed, and of the topology it had.
+
+mod chains;
+mod crossings;
+mod patchwork;
+mod refine;
+mod sheet;
+
+use crate::group::{FaceId, Groups};
+use crate::stitch::stitch;
+use crate::topology::Brep;
+use crate::triangulate::fill_loops;
+use crate::validate::Valid;
+use csg::Solid;
+use glam::DVec3;
+use patchwork::{NONE, Patchwork, Role, index};
+use sheet::Sheet;
+use subdiv::{Fragments, Triangle, VertexKind};
+
+/// What [`tessellate`] did.
+#[derive(Clone, Copy, PartialEq, Debug, Default)]
+pub struct Tessellated {
+    /// Faces whose facets were taken from their surfaces.
+    pub faces: usize,
+    /// Times that a part had to be tessellated more finely than its own deviation asked for.
+    pub refinements: usize,
+    /// B-Rep edges that keep the subdivision's vertices, since their surfaces are tangent.
+    pub kept_edges: usize,
+    /// Number of facets before.
+    pub facets_before: usize,
+    /// Number of facets after.
+    pub facets_after: usize,
+    /// Largest distance of a facet from its surface, in model units.
+    pub largest_deviation: f64,
+}
+
+/// Rounds of refinement where faces are nearer to each other than the tolerance.
+const ROUNDS: usize = 6;
+
+/// Replaces the facets of a boundary by such as its surfaces need at this tolerance, in model
+/// units. `solid` is what the boundary was made from.
+///
+/// Faces, edges, vertices, shells and genus stay what they are. `None` if that cannot be had:
+/// then the boundary's own facets are the answer.
+pub fn tessellate(
+    brep: &Valid<Brep>,
+    solid: &Solid,
+    tolerance: f64,
+) -> Option<(Valid<Brep>, Tessellated)> {
+    let groups = Groups::of(brep);
+    let sheets: Vec<Sheet<'_>> = solid
+        .primitives
+        .iter()
+        .map(|primitive| Sheet::of(primitive, &solid.domain))
+        .collect();
+    let mut tolerances = vec![tolerance; groups.faces.len()];
+    for round in 0..ROUNDS {
+        let run = Run::new(brep, &groups, &sheets, &tolerances, solid);
+        let troubled = match run.facets() {
+            Ok(fragments) => {
+                let result = stitch(&fragments).ok()?.validate().ok()?;
+                let counts = Tessellated {
+                    faces: groups.faces.len(),
+                    refinements: round,
+                    kept_edges: run.kept_edges,
+                    facets_before: brep.facet_count(),
+                    facets_after: result.facet_count(),
+                    largest_deviation: run.largest_deviation(),
+                };
+                return Some((result, counts));
+            }
+            Err(faces) => faces,
+        };
+        for face in troubled {
+            tolerances[face] *= 0.25;
+        }
+    }
+    None
+}
+
+/// One attempt, at given tolerances.
+struct Run<'a> {
+    mesh: Patchwork,
+    groups: &'a Groups,
+    /// By face.
+    sheets: Vec<&'a Sheet<'a>>,
+    /// By face: 1 where the surface's normals point outward, else −1.
+    outward: Vec<f64>,
+    /// By face.
+    tolerances: &'a [f64],
+    /// Distances that count as none.
+    rounding: f64,
+    kept_edges: usize,
+}
+
+impl<'a> Run<'a> {
+    fn new(
+        brep: &Brep,
+        groups: &'a Groups,
+        sheets: &'a [Sheet<'a>],
+        tolerances: &'a [f64],
+        solid: &Solid,
+    ) -> Self {
+        let of_face: Vec<&Sheet<'_>> = (groups.faces.iter())
+            .map(|face| &sheets[face.primitive.0 as usize])
+            .collect();
+        let is_plane = |FaceId(face)| of_face[face as usize].is_plane();
+        let (mesh, chains) = Patchwork::of(brep, groups, is_plane);
+        let largest = (mesh.positions.iter()).fold(0.0, |m: f64, p| m.max(p.abs().max_element()));
+        let mut this = Self {
+            outward: vec![1.0; of_face.len()],
+            mesh,
+            groups,
+            sheets: of_face,
+            tolerances,
+            rounding: 4.0 * f64::EPSILON * largest.max(solid.domain.size()),
+            kept_edges: 0,
+        };
+        this.orient();
+        this.settle();
+        this.place_apexes();
+        this.trace(&chains);
+        this.refine();
+        this
+    }
+
+    /// Finds out on which side of its surface each face has the outside.
+    fn orient(&mut self) {
+        let mut votes = vec![0.0; self.sheets.len()];
+        for facet in self.mesh.facets() {
+            let face = self.mesh.face[facet as usize] as usize;
+            let [a, b, c] = self.mesh.corners(facet).map(|v| self.mesh.position(v));
+            let area = (b - a).cross(c - a);
+            votes[face] += [a, b, c]
+                .map(|p| area.dot(self.sheets[face].at(p).1))
+                .iter()
+                .sum::<f64>();
+        }
+        for (outward, vote) in self.outward.iter_mut().zip(votes) {
+            *outward = if vote < 0.0 { -1.0 } else { 1.0 };
+        }
+    }
+
+    /// Moves vertices onto their surfaces: inside faces onto one, B-Rep vertices onto all.
+    fn settle(&mut self) {
+        let mut around: Vec<usize> = Vec::new();
+        for vertex in 0..index(self.mesh.positions.len()) {
+            let role = self.mesh.roles[vertex as usize];
+            if !matches!(role, Role::Inside | Role::Fixed) {
+                continue;
+            }
+            let first = self.mesh.outgoing[vertex as usize];
+            if first == NONE {
+                continue;
+            }
+            around.clear();
+            around.extend(
+                self.mesh
+                    .ring(first)
+                    .map(|h| self.mesh.face[h as usize / 3] as usize),
+            );
+            around.sort_unstable_by_key(|&face| self.groups.faces[face].primitive);
+            around.dedup_by_key(|face| self.groups.faces[*face].primitive);
+            let sheets: Vec<&Sheet<'_>> = around.iter().map(|&face| self.sheets[face]).collect();
+            let from = self.mesh.position(vertex);
+            let near = 4.0
+                * (self.mesh.ring(first))
+                    .map(|h| self.mesh.position(self.mesh.target(h)).distance(from))
+                    .fold(0.0, f64::max);
+            let to = match sheets[..] {
+                [sheet] => sheet.project(from, self.rounding),
+                [one, other] => sheet::project_on_both([one, other], from, self.rounding),
+                _ => sheet::project_on_all(&sheets, from, self.rounding),
+            };
+            if let Some(to) = to.filter(|to| to.distance(from) <= near) {
+                self.mesh.positions[vertex as usize] = to;
+            }
+        }
+    }
+
+    /// A cone's apex is a point of the solid like no other: the nearest vertex becomes it.
+    fn place_apexes(&mut self) {
+        let mut nearest = vec![(f64::INFINITY, NONE); self.sheets.len()];
+        for facet in self.mesh.facets() {
+            let face = self.mesh.face[facet as usize] as usize;
+            let Sheet::Cone { apex, .. } = self.sheets[face] else {
+                continue;
+            };
+            for vertex in self.mesh.corners(facet) {
+                let distance = self.mesh.position(vertex).distance(*apex);
+                if self.mesh.roles[vertex as usize] == Role::Inside && distance < nearest[face].0 {
+                    nearest[face] = (distance, vertex);
+                }
+            }
+        }
+        for (face, (distance, vertex)) in nearest.into_iter().enumerate() {
+            if let Sheet::Cone { apex, .. } = self.sheets[face]
+                && distance <= 2.0 * self.tolerances[face]
+            {
+                self.mesh.positions[vertex as usize] = *apex;
+                self.mesh.roles[vertex as usize] = Role::Fixed;
+            }
+        }
+    }
+
+    /// Gives every B-Rep edge the points that it needs, and takes those that it does not.
+    fn trace(&mut self, chains: &[Vec<u32>]) {
+        let mut old = Vec::new();
+        for ((edge, chain), name) in self.groups.edges.iter().zip(chains).zip(0..) {
+            let faces = edge.faces.map(|FaceId(face)| face as usize);
+            let sheets = faces.map(|face| self.sheets[face]);
+            let primitives = faces.map(|face| self.groups.faces[face].primitive);
+            // All but the ends of an open chain, which stay where they are.
+            let movable = match edge.ends {
+                None => &chain[..chain.len() - 1],
+                Some(_) => &chain[1..chain.len() - 1],
+            };
+            for &vertex in movable {
+                let from = self.mesh.position(vertex);
+                if let Some(to) = sheet::project_on_both(sheets, from, self.rounding) {
+                    self.mesh.positions[vertex as usize] = to;
+                }
+            }
+            let points: Vec<DVec3> = chain.iter().map(|&v| self.mesh.position(v)).collect();
+            let tolerance = self.tolerances[faces[0]].min(self.tolerances[faces[1]]);
+            let is_closed = chain.first() == chain.last();
+            let targets = if primitives[0] == primitives[1] {
+                None
+            } else {
+                chains::resample(sheets, &points, is_closed, tolerance, self.rounding)
+            };
+            let inner = &chain[1..chain.len() - 1];
+            let Some(targets) = targets else {
+                self.kept_edges += 1;
+                for &vertex in inner {
+                    self.mesh.roles[vertex as usize] = Role::Fixed;
+                }
+                continue;
+            };
+            let mut at = (usize::MAX, NONE);
+            for target in targets {
+                if at.0 != target.segment {
+                    at = (
+                        target.segment,
+                        self.crease_from(chain[target.segment], name, faces[0]),
+                    );
+                }
+                if at.1 != NONE {
+                    at.1 = self.mesh.split(at.1, target.position, Role::Fixed);
+                }
+            }
+            old.extend(inner);
+            // The point where a closed chain begins is as good as any.
+            self.mesh.roles[chain[0] as usize] = Role::Fixed;
+        }
+        self.collapse_along_chains(old);
+    }
+
+    /// The half-edge that leaves a vertex along a B-Rep edge with this face to the left.
+    fn crease_from(&self, vertex: u32, name: u32, left: usize) -> u32 {
+        let first = self.mesh.outgoing[vertex as usize];
+        let mut ring = self.mesh.ring(first);
+        ring.find(|&h| {
+            self.mesh.crease[h as usize] == name && self.mesh.face[h as usize / 3] as usize == left
+        })
+        .unwrap_or(NONE)
+    }
+
+    /// The boundary as triangles, or the faces that did not come out well.
+    fn facets(&self) -> Result<Fragments, Vec<usize>> {
+        let mut troubled = self.troubled();
+        let mut loops: Vec<Vec<Vec<u32>>> = vec![Vec::new(); self.sheets.len()];
+        for (phantom, &role) in (0_u32..).zip(&self.mesh.roles) {
+            if role != Role::Phantom {
+                continue;
+            }
+            let first = self.mesh.outgoing[phantom as usize];
+            let face = self.mesh.face[first as usize / 3] as usize;
+            // The ring is counter-clockwise around the phantom, as the loop is around the face.
+            let around = self.mesh.ring(first).map(|spoke| self.mesh.target(spoke));
+            loops[face].push(around.collect());
+        }
+        let mut normals = vec![DVec3::ZERO; self.sheets.len()];
+        for (face, normal) in normals.iter_mut().enumerate() {
+            if let Sheet::Plane { normal: n, .. } = self.sheets[face] {
+                *normal = *n * self.plane_sense(&loops[face], *n);
+            }
+        }
+        let mut of_face: Vec<Vec<[u32; 3]>> = vec![Vec::new(); self.sheets.len()];
+        for facet in self.mesh.facets() {
+            let face = self.mesh.face[facet as usize] as usize;
+            if !self.sheets[face].is_plane() {
+                of_face[face].push(self.mesh.corners(facet));
+            }
+        }
+        for (face, loops) in loops.iter().enumerate() {
+            if !self.sheets[face].is_plane() {
+                continue;
+            }
+            match fill_loops(loops, &self.mesh.positions, normals[face]) {
+                Ok(triangles) => of_face[face] = triangles,
+                Err(_) => troubled.push(face),
+            }
+        }
+        if !troubled.is_empty() {
+            troubled.sort_unstable();
+            troubled.dedup();
+            return Err(troubled);
+        }
+        let crossing = self.crossing_faces(&of_face);
+        if !crossing.is_empty() {
+            return Err(crossing);
+        }
+        let mut triangles = Vec::new();
+        for (face, corners) in self.groups.faces.iter().zip(of_face) {
+            triangles.extend(corners.into_iter().map(|vertices| Triangle {
+                vertices,
+                primitive: face.primitive,
+                sense: face.sense,
+                material: face.material,
+            }));
+        }
+        Ok(Fragments {
+            kinds: vec![VertexKind::Interior; self.mesh.positions.len()],
+            positions: self.mesh.positions.clone(),
+            triangles,
+        })
+    }
+
+    /// Faces with triangles that pass through others.
+    fn crossing_faces(&self, of_face: &[Vec<[u32; 3]>]) -> Vec<usize> {
+        let triangles: Vec<[u32; 3]> = of_face.iter().flatten().copied().collect();
+        let faces: Vec<usize> = of_face
+            .iter()
+            .enumerate()
+            .flat_map(|(face, triangles)| std::iter::repeat_n(face, triangles.len()))
+            .collect();
+        let pairs = crossings::crossings(&self.mesh.positions, &triangles);
+        let mut crossing: Vec<usize> = pairs.into_flattened();
+        for triangle in &mut crossing {
+            *triangle = faces[*triangle];
+        }
+        crossing.sort_unstable();
+        crossing.dedup();
+        crossing
+    }
+
+    /// 1 if loops with the face to their left run counter-clockwise around `normal`, else −1.
+    fn plane_sense(&self, loops: &[Vec<u32>], normal: DVec3) -> f64 {
+        let mut area = DVec3::ZERO;
+        for corners in loops {
+            let first = self.mesh.position(corners[0]);
+            for pair in corners.windows(2) {
+                let [a, b] = [pair[0], pair[1]].map(|v| self.mesh.position(v) - first);
+                area += a.cross(b);
+            }
+        }
+        if area.dot(normal) < 0.0 { -1.0 } else { 1.0 }
+    }
+}
