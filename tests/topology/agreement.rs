@@ -44,7 +44,9 @@ impl Verdict {
 const TOLERANCES: [f64; 5] = [1e-2, 2e-3, 4e-4, 8e-5, 1.6e-5];
 
 /// Converts a model in all positions of the domain, and by the metric rule.
-pub(crate) fn compare(model: &Model, name: &dyn Fn() -> String) -> Verdict {
+///
+/// `finest`: cells at which the proof gives up, as a fraction of the diagonal.
+pub(crate) fn compare(model: &Model, finest: f64, name: &dyn Fn() -> String) -> Verdict {
     let solids = fits().map(|fit| {
         Solid::build_fitted(model, None, fit).unwrap_or_else(|error| panic!("{}: {error}", name()))
     });
@@ -57,7 +59,7 @@ pub(crate) fn compare(model: &Model, name: &dyn Fn() -> String) -> Verdict {
     }
     let mut known: Option<Structure> = None;
     for (at, solid) in solids.iter().enumerate() {
-        let coarse = topology(solid.clone(), 1e-5);
+        let coarse = topology(solid.clone(), finest);
         verdict.leaves += coarse.report.leaves;
         if coarse.report.proved_topology != Some(true) {
             verdict.certified = false;

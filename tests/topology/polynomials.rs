@@ -56,7 +56,7 @@ fn agree(degree: usize, count: u64) -> Vec<Verdict> {
         .enumerate()
         .map(|(at, random)| {
             let name = || format!("number {at} of degree {degree}: {random:?}");
-            compare(&model(degree, random), &name)
+            compare(&model(degree, random), 1e-5, &name)
         })
         .collect()
 }
