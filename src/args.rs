@@ -64,6 +64,8 @@ pub(crate) enum Command {
     },
     /// Print the manual page
     Man,
+    /// Print the JSON schema of the reports that `--report` writes
+    ReportSchema,
 }
 
 /// How much is said, and how.

@@ -7,7 +7,7 @@ use crate::pipeline::{self, Boundary};
 use crate::progress::Progress;
 use crate::report::{InputReport, Report};
 use crate::run::{Conversion, Job, Target};
-use crate::summary::{grouped, summary};
+use crate::summary::{grouped, significant, summary};
 use crate::talk::Talk;
 use std::time::Instant;
 
@@ -109,6 +109,18 @@ fn details(report: &Report) -> String {
             grouped(counts.merged_faces),
             grouped(counts.leaf_facets),
             grouped(counts.facets)
+        ));
+    }
+    if let Some(quality) = &report.quality {
+        lines.push(format!(
+            "{:>12}: smallest angle {} deg, mean {:.1} deg, {} below 1 deg, largest aspect {}",
+            "facets",
+            significant(quality.smallest_angle_deg, 3),
+            quality.mean_angle_deg,
+            grouped(quality.slivers),
+            quality
+                .largest_aspect
+                .map_or_else(|| "infinite".to_owned(), |aspect| significant(aspect, 3)),
         ));
     }
     if let Some(bytes) = report.peak_memory_bytes {

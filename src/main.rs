@@ -25,7 +25,8 @@ mod view;
 use args::{Cli, Command};
 use clap::Parser as _;
 use failure::Failure;
-use run::Conversion;
+use report::Report;
+use run::{Conversion, Target};
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::process::ExitCode;
 use talk::Talk;
@@ -60,5 +61,11 @@ fn dispatch(cli: Cli, talk: Talk) -> Result<(), Failure> {
         Some(Command::Thesis(command)) => thesis::run(command, talk),
         Some(Command::Completions { shell }) => shell::completions(shell),
         Some(Command::Man) => shell::manual(),
+        Some(Command::ReportSchema) => report_schema(),
     }
+}
+
+fn report_schema() -> Result<(), Failure> {
+    let schema = Report::schema().map_err(|error| Failure::Bug(error.to_string()))?;
+    output::write_bytes(&Target::Stdout, schema.as_bytes())
 }

@@ -8,7 +8,7 @@ use crate::report::Report;
 use crate::run::Job;
 use crate::talk::Talk;
 use brep::simplify::remove_degenerate;
-use brep::{Brep, Groups, Properties, Retriangulated, Shells, Valid};
+use brep::{Brep, Groups, Properties, Quality, Retriangulated, Shells, Valid};
 use csg::{PrimitiveId, Solid};
 use subdiv::{Fragments, Rule};
 
@@ -40,10 +40,12 @@ pub(crate) fn run(
     let brep = mesh(&solid, job, talk, progress, report)?;
 
     progress.begin("measuring");
-    let (groups, shells, properties) = report.timed("measuring", || {
-        (Groups::of(&brep), Shells::of(&brep), Properties::of(&brep))
+    let (groups, shells, properties, quality) = report.timed("measuring", || {
+        let (groups, shells) = (Groups::of(&brep), Shells::of(&brep));
+        (groups, shells, Properties::of(&brep), Quality::of(&brep))
     });
     report.add_boundary(&brep, &groups, &shells, &properties);
+    report.add_quality(quality.as_ref());
     Ok(Boundary { brep, solid })
 }
 

@@ -3,16 +3,21 @@
 //! Lengths are in model units, times in seconds. Names are stable within a `schema_version`;
 //! what could not be measured or proved is null.
 
-use brep::{Brep, Groups, Properties, Retriangulated, Shells, Tessellated};
+use brep::{Brep, Groups, Properties, Quality, Retriangulated, Shells, Tessellated};
+use schemars::JsonSchema;
 use serde::Serialize;
 use std::time::Instant;
 
 /// Raised when a name changes its meaning or disappears, not when one is added.
 const SCHEMA_VERSION: u32 = 1;
 
-/// The whole report.
-#[derive(Clone, Debug, Serialize)]
+/// What csg2brep did with a model and what it measured.
+///
+/// Lengths are in model units, times in seconds. Names are stable within a `schema_version`; what
+/// could not be measured or proved is null.
+#[derive(Clone, Debug, Serialize, JsonSchema)]
 pub(crate) struct Report {
+    /// Raised when a name changes its meaning or disappears, not when one is added.
     schema_version: u32,
     /// The model.
     pub(crate) input: InputReport,
@@ -28,13 +33,13 @@ pub(crate) struct Report {
     pub(crate) counts: Counts,
     /// Sum of the shells' genera.
     pub(crate) genus: Option<u64>,
-    /// Of the mesh.
+    /// Surface area of the mesh.
     pub(crate) area: Option<f64>,
-    /// Of the mesh.
+    /// Volume that the mesh encloses.
     pub(crate) volume: Option<f64>,
     /// Proved bounds of the true solid's volume.
     pub(crate) volume_interval: Option<[f64; 2]>,
-    /// Of the mesh; none if it is empty.
+    /// Centre of mass of what the mesh encloses; null if it is empty.
     pub(crate) centroid: Option<[f64; 3]>,
     /// Largest proved distance between mesh and true boundary over all certified cells.
     pub(crate) proved_distance: Option<f64>,
@@ -53,6 +58,11 @@ pub(crate) struct Report {
     pub(crate) nearly_equal_primitives: Vec<NearlyEqual>,
     /// Vertices doubled where the boundary touches itself.
     pub(crate) split_vertices: u64,
+    /// Cells in which facets of different surfaces cross by rounding of their positions; elsewhere
+    /// none cross.
+    pub(crate) crossing_cells: u64,
+    /// Shapes of the facets; null if there are none.
+    pub(crate) quality: Option<QualityReport>,
     /// What was said about the model.
     pub(crate) warnings: Vec<String>,
     /// Why the run ended early, if it did.
@@ -61,45 +71,60 @@ pub(crate) struct Report {
 }
 
 /// The model's origin.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, Serialize, JsonSchema)]
 pub(crate) struct InputReport {
+    /// Path as given; `-` is standard input.
     pub(crate) name: String,
+    /// Format it was read as; null if that was not found out.
     pub(crate) format: Option<&'static str>,
 }
 
 /// The settings in force.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, Serialize, JsonSchema)]
 pub(crate) struct SettingsReport {
     /// In model units; none with a fixed level.
     pub(crate) tolerance: Option<f64>,
+    /// Bisection level of all cells, if it was fixed.
     pub(crate) level: Option<u8>,
     /// Whether subdivision ends as soon as the topology is proved; the tolerance is then the
     /// size of the finest cells.
     pub(crate) topology_only: bool,
+    /// Deepest bisection level allowed; null: the one at which cells are as small as the tolerance.
     pub(crate) max_level: Option<u8>,
+    /// How polynomials are bounded.
     pub(crate) criterion: &'static str,
+    /// Whether planar faces are filled from their edges or left in pieces.
     pub(crate) mesh: &'static str,
-    /// Smallest, then largest coordinates.
+    /// The clip box: smallest, then largest coordinates.
     #[serde(rename = "box")]
     pub(crate) clip: Option<[f64; 6]>,
+    /// Largest `$fn` that means a polyhedron.
     pub(crate) facet_limit: u32,
+    /// Largest degree of a polynomial in the model.
     pub(crate) max_degree: u8,
+    /// Most cells that may meet the boundary.
     pub(crate) max_cells: u64,
+    /// Most memory that the subdivision may take.
     pub(crate) max_memory_bytes: u64,
+    /// Threads asked for; null: one for each core. Never changes the result.
     pub(crate) threads: Option<usize>,
 }
 
 /// A stage and its duration.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, Serialize, JsonSchema)]
 pub(crate) struct Stage {
+    /// What was done.
     pub(crate) name: &'static str,
+    /// How long it took.
     pub(crate) seconds: f64,
 }
 
 /// Numbers of things.
-#[derive(Clone, Copy, Debug, Default, Serialize)]
+#[derive(Clone, Copy, Debug, Default, Serialize, JsonSchema)]
 pub(crate) struct Counts {
+    /// Cells of the subdivision that meet the boundary.
     pub(crate) leaves: u64,
+    /// Bisections made for them.
     pub(crate) bisections: u64,
     /// Facets before planar faces were merged.
     pub(crate) leaf_facets: u64,
@@ -111,32 +136,68 @@ pub(crate) struct Counts {
     pub(crate) tessellated_faces: u64,
     /// B-Rep edges that could not be followed, so that they kept the subdivision's vertices.
     pub(crate) kept_edges: u64,
+    /// Triangles written.
     pub(crate) facets: u64,
+    /// Vertices written.
     pub(crate) vertices: u64,
+    /// Connected parts of one surface.
     pub(crate) brep_faces: u64,
+    /// Curves between two of them.
     pub(crate) brep_edges: u64,
+    /// Points where curves end.
     pub(crate) brep_vertices: u64,
+    /// Connected parts of the boundary, cavities included.
     pub(crate) shells: u64,
+    /// Connected pieces of matter.
     pub(crate) solids: u64,
 }
 
 /// A place where nothing is proved.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, Serialize, JsonSchema)]
 pub(crate) struct Uncertified {
+    /// Middle of the cell.
     pub(crate) position: [f64; 3],
+    /// Its longest edge.
     pub(crate) size: f64,
+    /// The surfaces involved, as `csg2brep info` numbers them.
     pub(crate) primitives: Vec<u32>,
+    /// What went wrong.
     pub(crate) reason: &'static str,
 }
 
 /// Two surfaces that are suspiciously close to each other.
-#[derive(Clone, Copy, Debug, Serialize)]
+#[derive(Clone, Copy, Debug, Serialize, JsonSchema)]
 pub(crate) struct NearlyEqual {
+    /// The two, as `csg2brep info` numbers them.
     pub(crate) primitives: [u32; 2],
+    /// Largest difference of their coefficients, scaled to 1 over the model's domain.
     pub(crate) difference: f64,
 }
 
+/// Shapes of the facets.
+#[derive(Clone, Copy, Debug, Serialize, JsonSchema)]
+pub(crate) struct QualityReport {
+    /// Smallest angle of all facets, in degrees.
+    pub(crate) smallest_angle_deg: f64,
+    /// Mean of each facet's smallest angle, in degrees.
+    pub(crate) mean_angle_deg: f64,
+    /// Facets with an angle below one degree.
+    pub(crate) slivers: u64,
+    /// Largest ratio of a facet's longest edge to its height over it; null with a facet without
+    /// area.
+    pub(crate) largest_aspect: Option<f64>,
+    /// Length of the shortest edge.
+    pub(crate) shortest_edge: f64,
+}
+
 impl Report {
+    /// The JSON schema that all reports follow, indented, with a final line feed.
+    pub(crate) fn schema() -> serde_json::Result<String> {
+        let settings = schemars::generate::SchemaSettings::draft2020_12().for_serialize();
+        let schema = settings.into_generator().into_root_schema_for::<Self>();
+        Ok(serde_json::to_string_pretty(&schema)? + "\n")
+    }
+
     /// Nothing done yet.
     pub(crate) fn new(input: InputReport, settings: SettingsReport) -> Self {
         Self {
@@ -160,6 +221,8 @@ impl Report {
             clipped: false,
             nearly_equal_primitives: Vec::new(),
             split_vertices: 0,
+            crossing_cells: 0,
+            quality: None,
             warnings: Vec::new(),
             error: None,
         }
@@ -186,6 +249,7 @@ impl Report {
         self.proved_distance = of.largest_deviation;
         self.proved_topology = of.proved_topology == Some(true);
         self.split_vertices = of.split_vertices;
+        self.crossing_cells = of.crossing_leaves;
         self.uncertified_count = of.uncertified_leaves;
         self.uncertified = of.uncertified.iter().map(Uncertified::from).collect();
         let names = ["subdivision", "balance", "extraction"];
@@ -240,6 +304,11 @@ impl Report {
         let has_center = brep.facet_count() > 0 && properties.centroid.is_finite();
         self.centroid = has_center.then(|| properties.centroid.to_array());
     }
+
+    /// How well the facets are shaped.
+    pub(crate) fn add_quality(&mut self, quality: Option<&Quality>) {
+        self.quality = quality.map(QualityReport::from);
+    }
 }
 
 /// JSON has no other numbers.
@@ -260,6 +329,18 @@ impl From<&subdiv::Spot> for Uncertified {
                 subdiv::Reason::Concurrent => "concurrent",
                 subdiv::Reason::Wall => "wall",
             },
+        }
+    }
+}
+
+impl From<&Quality> for QualityReport {
+    fn from(of: &Quality) -> Self {
+        Self {
+            smallest_angle_deg: of.smallest_angle_deg,
+            mean_angle_deg: of.mean_angle_deg,
+            slivers: of.slivers,
+            largest_aspect: finite(of.largest_aspect),
+            shortest_edge: of.shortest_edge,
         }
     }
 }

@@ -50,6 +50,9 @@ fn facts(report: &Report) -> Vec<String> {
     if report.proved_topology {
         facts.push("topology proved".to_owned());
     }
+    if let Some(quality) = report.quality.filter(|quality| quality.slivers > 0) {
+        facts.push(counted(quality.slivers, "sliver"));
+    }
     if report.uncertified_count > 0 {
         facts.push(format!(
             "{} not certified",

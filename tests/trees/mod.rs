@@ -2,6 +2,8 @@
 
 #![allow(dead_code, reason = "each test uses its own part")]
 
+pub(crate) mod membership;
+
 use csg::{Model, ModelBuilder, Node, NodeId, Shape, Transform};
 use glam::DVec3;
 use proptest::prelude::*;
@@ -165,29 +167,36 @@ fn add_part(model: &mut ModelBuilder, part: Part) -> NodeId {
     model.add(Node::Shape(shape.unwrap()))
 }
 
-fn place(model: &mut ModelBuilder, node: NodeId, placement: Placement) -> NodeId {
-    // Quarter turns and a mirror as exact signed permutations.
-    let mut columns = [DVec3::X, DVec3::Y, DVec3::Z];
-    for (axis, turns) in placement.quarter_turns.into_iter().enumerate() {
-        for _ in 0..turns {
-            let (b, c) = ((axis + 1) % 3, (axis + 2) % 3);
-            (columns[b], columns[c]) = (columns[c], -columns[b]);
+impl Placement {
+    /// Where the axes and the origin go; the axes stay orthonormal.
+    fn frame(&self) -> ([DVec3; 3], DVec3) {
+        // Quarter turns and a mirror as exact signed permutations.
+        let mut columns = [DVec3::X, DVec3::Y, DVec3::Z];
+        for (axis, turns) in self.quarter_turns.into_iter().enumerate() {
+            for _ in 0..turns {
+                let (b, c) = ((axis + 1) % 3, (axis + 2) % 3);
+                (columns[b], columns[c]) = (columns[c], -columns[b]);
+            }
         }
+        if self.mirrored {
+            columns[0] = -columns[0];
+        }
+        if self.turn_rad != 0.0 {
+            let axis = DVec3::new(1.0, 2.0, 3.0).normalize();
+            let turn = glam::DQuat::from_axis_angle(axis, self.turn_rad);
+            columns = columns.map(|column| turn * column);
+        }
+        let at = [0, 1, 2].map(|a| f64::from(self.offset[a]) * 0.5 + self.jitter[a]);
+        (columns, DVec3::from(at))
     }
-    if placement.mirrored {
-        columns[0] = -columns[0];
-    }
-    if placement.turn_rad != 0.0 {
-        let axis = DVec3::new(1.0, 2.0, 3.0).normalize();
-        let turn = glam::DQuat::from_axis_angle(axis, placement.turn_rad);
-        columns = columns.map(|column| turn * column);
-    }
-    let [x, y, z] = columns;
-    let at = [0, 1, 2].map(|a| f64::from(placement.offset[a]) * 0.5 + placement.jitter[a]);
+}
+
+fn place(model: &mut ModelBuilder, node: NodeId, placement: Placement) -> NodeId {
+    let ([x, y, z], at) = placement.frame();
     let matrix = [
-        [x.x, y.x, z.x, at[0]],
-        [x.y, y.y, z.y, at[1]],
-        [x.z, y.z, z.z, at[2]],
+        [x.x, y.x, z.x, at.x],
+        [x.y, y.y, z.y, at.y],
+        [x.z, y.z, z.z, at.z],
         [0.0, 0.0, 0.0, 1.0],
     ];
     model.add(Node::Instance(
