@@ -31,8 +31,13 @@ pub(crate) fn run(conversion: &Conversion, talk: Talk) -> Result<(), Failure> {
     let names: Vec<String> = conversion.outputs.iter().map(|o| o.target.name()).collect();
     talk.say(&summary(&report, &names));
     if conversion.strict && report.uncertified_count > 0 {
+        let what = if report.settings.topology_only {
+            "leave the topology open"
+        } else {
+            "are not certified to the tolerance"
+        };
         return Err(Failure::NotCertified(format!(
-            "{} cells are not certified to the tolerance (--strict)",
+            "{} cells {what} (--strict)",
             grouped(report.uncertified_count)
         )));
     }
