@@ -94,8 +94,11 @@ fn table(solid: &Solid, name: &str, level: u8, halt: Halt) -> String {
             in_vain: Some(run.wrongly_bisected),
             seconds: Some(start.elapsed().as_secs_f64()),
         };
-        optimum = run.found;
-        adaptive_rows += &row.line(optimum.optimal_evaluations);
+        adaptive_rows += &row.line(run.found.optimal_evaluations);
+        // Where bisection ends at planes, the sharpest criterion ends earliest.
+        if criterion == Criterion::Rivlin {
+            optimum = run.found;
+        }
     }
     let best = optimum.optimal_evaluations;
     let regular = level.is_multiple_of(3) && halt == Halt::Never;

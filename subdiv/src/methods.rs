@@ -22,6 +22,13 @@ pub use complete::{Complete, complete};
 pub use continuation::{Continuation, continuation};
 pub use cube::{CubeCut, Pattern};
 
+/// The conversion to Bernstein form that Table 6.1 times: coefficients of one primitive on the six
+/// root simplices.
+#[must_use]
+pub fn bernstein_coefficients(primitive: &csg::Primitive) -> [Vec<f64>; 6] {
+    crate::blossom::RootCoefficients::new(primitive).roots
+}
+
 /// The vertices of a simplex, ascending, in units of 2⁻²⁰ of the domain's side.
 pub type Cell = [[u32; 3]; 4];
 

@@ -1,0 +1,45 @@
+//! The solids of the thesis, each in a box of a chosen size.
+
+use csg::{DomainFit, Model, Solid};
+use glam::DVec3;
+use std::path::Path;
+
+/// The three of Figure 6.1.
+pub(crate) const THREE: [&str; 3] = ["manchete", "atomo", "chupeta"];
+
+fn model(name: &str) -> Model {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("fixtures/thesis");
+    let source = std::fs::read_to_string(folder.join(format!("{name}.csg")));
+    let source = source.expect("a fixture");
+    let options = io::read::ReadOptions::default();
+    let reading = io::read::scad_csg::read(&source, name, &options);
+    reading.expect("a readable fixture").model
+}
+
+/// In the usual box.
+pub(crate) fn load(name: &str) -> Solid {
+    load_in(name, 1.0)
+}
+
+/// In a box so many times as wide as the usual one.
+pub(crate) fn load_in(name: &str, times: f64) -> Solid {
+    let shift = DVec3::new(0.009_173_1, -0.012_951_7, 0.006_837_9);
+    let fit = DomainFit::new(1.073_618_3 * times, shift).expect("room");
+    Solid::build_fitted(&model(name), None, fit).expect("a bounded fixture")
+}
+
+/// So many spheres in the box of 64; 128 have their own, since they are a ring.
+pub(crate) fn spheres(count: usize) -> Solid {
+    let name = |count| format!("spheres_{count:03}");
+    let alone = load(&name(count));
+    let largest = load(&name(64)).domain;
+    if count > 64 {
+        return alone;
+    }
+    let extent = alone.extent;
+    let size = extent.max - extent.min;
+    let middle = (extent.max + extent.min) * 0.5;
+    let shift = largest.to_unit(middle) - 0.5;
+    let fit = DomainFit::new(largest.size() / size.max_element(), shift).expect("room");
+    Solid::build_fitted(&model(&name(count)), None, fit).expect("a bounded fixture")
+}
