@@ -110,6 +110,10 @@ pub(crate) struct ConvertArgs {
     /// The format of the output, whatever its extension
     #[arg(long, value_name = "FORMAT", requires = "outputs")]
     pub(crate) to: Option<OutputFormat>,
+    /// What a model unit is, for formats that say it: 3MF (mm if not given), GLB (m if not
+    /// given), OBJ and PLY (a comment); no coordinates change
+    #[arg(long, value_name = "UNIT", requires = "outputs")]
+    pub(crate) unit: Option<LengthUnit>,
     /// The format of the input, whatever its content and extension
     #[arg(long, value_name = "FORMAT", hide_short_help = true)]
     pub(crate) from: Option<InputFormat>,
@@ -310,4 +314,26 @@ pub(crate) enum OutputFormat {
     Glb,
     /// Binary STL
     Stl,
+    /// 3D Manufacturing Format
+    #[value(name = "3mf")]
+    Threemf,
+    /// Binary PLY
+    Ply,
+}
+
+/// Units of length.
+#[derive(ValueEnum, Clone, Copy, PartialEq, Eq, Debug)]
+pub(crate) enum LengthUnit {
+    /// Micrometres
+    Um,
+    /// Millimetres
+    Mm,
+    /// Centimetres
+    Cm,
+    /// Metres
+    M,
+    /// Inches
+    In,
+    /// Feet
+    Ft,
 }

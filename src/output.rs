@@ -6,13 +6,17 @@ use crate::pipeline::Boundary;
 use crate::run::{Output, Target};
 use brep::Shading;
 use csg::Material;
-use io::write::{Error, atomic, gltf, obj, stl};
+use io::write::{Error, Unit, atomic, gltf, obj, ply, stl, threemf};
 use std::io::{BufWriter, Write};
 use std::path::Path;
 
 /// Writes a boundary; a failed run leaves the old file as it was. Returns what the user should
 /// know about the file.
-pub(crate) fn write(output: &Output, boundary: &Boundary) -> Result<Option<String>, Failure> {
+pub(crate) fn write(
+    output: &Output,
+    boundary: &Boundary,
+    unit: Option<Unit>,
+) -> Result<Option<String>, Failure> {
     let library = match (output.format, &output.target) {
         (OutputFormat::Obj, Target::File(path)) if is_painted(&boundary.solid.materials) => {
             Some(path.with_extension("mtl"))
@@ -23,7 +27,7 @@ pub(crate) fn write(output: &Output, boundary: &Boundary) -> Result<Option<Strin
     let reference = library.as_deref().and_then(Path::file_name);
     let reference = reference.map(|name| name.to_string_lossy().into_owned());
     to_target(&output.target, |out| {
-        remark = mesh(output.format, boundary, reference, out)?;
+        remark = mesh(output.format, boundary, unit, reference, out)?;
         Ok(())
     })?;
     if let Some(library) = library {
@@ -59,6 +63,7 @@ pub(crate) fn to_target(
 fn mesh(
     format: OutputFormat,
     boundary: &Boundary,
+    unit: Option<Unit>,
     material_library: Option<String>,
     mut out: &mut dyn Write,
 ) -> Result<Option<String>, Error> {
@@ -67,20 +72,33 @@ fn mesh(
         OutputFormat::Obj => {
             let options = obj::Options {
                 material_library,
-                ..obj::Options::default()
+                unit,
             };
-            obj::write(brep, &options, &mut out)?;
+            let shading = Shading::on_surfaces(brep, solid);
+            obj::write_shaded(brep, &shading, &options, &mut out)?;
         }
         OutputFormat::Glb => {
             let shading = Shading::on_surfaces(brep, solid);
-            let options = gltf::Options::default();
+            let options = gltf::Options {
+                metres_per_unit: unit.map_or(1.0, Unit::metres),
+            };
             gltf::write_shaded(brep, &shading, &solid.materials, &options, &mut out)?;
+        }
+        OutputFormat::Threemf => {
+            let options = threemf::Options {
+                unit: unit.unwrap_or_default(),
+            };
+            threemf::write(brep, &solid.materials, &options, &mut out)?;
+        }
+        OutputFormat::Ply => {
+            let options = ply::Options { unit };
+            ply::write(brep, &solid.materials, &options, &mut out)?;
         }
         OutputFormat::Stl => {
             let outcome = stl::write(brep, &mut out)?;
             if let stl::Welding::Broken { .. } = outcome.welding {
                 let text = "the 32-bit numbers of STL make different vertices equal: programs that \
-                            join equal vertices will not find the mesh closed; GLB and OBJ have no \
+                            join equal vertices will not find the mesh closed; 3MF, PLY, GLB and OBJ have no \
                             such problem";
                 return Ok(Some(text.to_owned()));
             }

@@ -9,6 +9,7 @@ use crate::values::{Bytes, Tolerance};
 use csg::Aabb;
 use glam::DVec3;
 use io::read::ReadOptions;
+use io::write::Unit;
 use std::path::{Path, PathBuf};
 
 /// Where a file goes.
@@ -57,6 +58,7 @@ pub(crate) struct Conversion {
     pub(crate) job: Job,
     pub(crate) from: Option<args::InputFormat>,
     pub(crate) outputs: Vec<Output>,
+    pub(crate) unit: Option<Unit>,
     pub(crate) report: Option<Target>,
     pub(crate) strict: bool,
 }
@@ -195,9 +197,23 @@ impl Conversion {
             job,
             from: args.from,
             outputs,
+            unit: args.unit.map(Unit::from),
             report,
             strict: args.strict,
         })
+    }
+}
+
+impl From<args::LengthUnit> for Unit {
+    fn from(unit: args::LengthUnit) -> Self {
+        match unit {
+            args::LengthUnit::Um => Self::Micron,
+            args::LengthUnit::Mm => Self::Millimetre,
+            args::LengthUnit::Cm => Self::Centimetre,
+            args::LengthUnit::M => Self::Metre,
+            args::LengthUnit::In => Self::Inch,
+            args::LengthUnit::Ft => Self::Foot,
+        }
     }
 }
 
@@ -227,7 +243,7 @@ fn output(path: PathBuf, to: Option<OutputFormat>) -> Result<Output, Failure> {
     let format = match (&target, to) {
         (_, Some(format)) => format,
         (Target::Stdout, None) => {
-            let text = "standard output needs a format: --to obj, --to glb or --to stl";
+            let text = "standard output needs a format: --to obj, glb, stl, 3mf or ply";
             return Err(Failure::Usage(text.to_owned()));
         }
         (Target::File(path), None) => {
@@ -238,9 +254,11 @@ fn output(path: PathBuf, to: Option<OutputFormat>) -> Result<Output, Failure> {
                 Some("obj") => OutputFormat::Obj,
                 Some("glb") => OutputFormat::Glb,
                 Some("stl") => OutputFormat::Stl,
+                Some("3mf") => OutputFormat::Threemf,
+                Some("ply") => OutputFormat::Ply,
                 _ => {
                     return Err(Failure::Usage(format!(
-                        "{}: no format has this extension (known: .obj, .glb, .stl; or choose one with --to)",
+                        "{}: no format has this extension (known: .obj, .glb, .stl, .3mf, .ply; or choose one with --to)",
                         path.display()
                     )));
                 }

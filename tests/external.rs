@@ -3,12 +3,13 @@
 mod stages;
 mod support;
 
-use io::write::{gltf, obj};
+use brep::Shading;
+use io::write::{Unit, gltf, obj, ply, threemf};
 use stages::{Converted, convert};
 use std::fs::{self, File};
 use std::io::BufWriter;
 use std::path::PathBuf;
-use support::manifold_report;
+use support::{file_reports, manifold_report};
 use tempfile::TempDir;
 
 const MODELS: [(&str, &str); 6] = [
@@ -39,7 +40,9 @@ fn write(folder: &TempDir, name: &str, converted: &Converted) -> [PathBuf; 2] {
     let [obj, glb] = ["obj", "glb"].map(|end| folder.path().join(format!("{name}.{end}")));
     let create = |path: &PathBuf| BufWriter::new(File::create(path).expect("a new file"));
     let brep = &converted.brep;
-    obj::write(brep, &obj::Options::default(), &mut create(&obj)).expect("an OBJ file");
+    let shading = Shading::on_surfaces(brep, &converted.solid);
+    let options = obj::Options::default();
+    obj::write_shaded(brep, &shading, &options, &mut create(&obj)).expect("an OBJ file");
     let materials = &converted.solid.materials;
     let options = gltf::Options::default();
     gltf::write(brep, materials, &options, &mut create(&glb)).expect("a GLB file");
@@ -106,4 +109,45 @@ fn manifold_refuses_a_file_with_a_hole() {
     let reports = manifold_report(&[obj, missing]);
     assert_eq!(reports[0].status, "NotManifold");
     assert_eq!(reports[1].status, "Unreadable");
+}
+
+#[test]
+fn lib3mf_and_plyfile_find_what_we_wrote() {
+    let folder = tempfile::tempdir().expect("a folder");
+    for (name, source) in MODELS {
+        let Converted {
+            brep,
+            solid,
+            properties,
+            ..
+        } = &convert(source, 0.02);
+        let [path_3mf, path_ply] =
+            ["3mf", "ply"].map(|end| folder.path().join(format!("{name}.{end}")));
+        let create = |path: &PathBuf| BufWriter::new(File::create(path).expect("a new file"));
+        let options = threemf::Options { unit: Unit::Inch };
+        threemf::write(brep, &solid.materials, &options, &mut create(&path_3mf))
+            .expect("a 3MF file");
+        let options = ply::Options::default();
+        ply::write(brep, &solid.materials, &options, &mut create(&path_ply)).expect("a PLY file");
+        let reports = file_reports(&[path_3mf, path_ply]);
+
+        let colours = match name {
+            "empty" => 0,
+            "coloured" => 2,
+            _ => 1,
+        };
+        // lib3mf stores positions as 32-bit numbers, below 6 here: 2⁻²⁴ of their size.
+        for (report, rounding) in reports.iter().zip([4e-7, 1e-12]) {
+            assert_eq!(report.vertices, brep.vertex_count(), "{name}: {report:?}");
+            assert_eq!(report.triangles, brep.facet_count(), "{name}: {report:?}");
+            assert_eq!(report.materials, colours, "{name}: {report:?}");
+            let allowed = rounding * properties.area.max(1.0);
+            let difference = report.volume - properties.volume;
+            assert!(difference.abs() <= allowed, "{name}: {report:?}");
+        }
+        assert_eq!(reports[0].warnings, Some(0), "{name}");
+        assert_eq!(reports[0].manifold, Some(true), "{name}");
+        // eModelUnit::Inch of lib3mf.
+        assert_eq!(reports[0].unit, Some(3), "{name}");
+    }
 }

@@ -61,6 +61,28 @@ pub(crate) fn manifold_report<P: AsRef<Path>>(paths: &[P]) -> Vec<ManifoldReport
     serde_json::from_slice(&output.stdout).expect("the validators print JSON")
 }
 
+/// What lib3mf or plyfile finds in a file; `tests/python/mesh_files.py` explains the fields.
+#[derive(Clone, PartialEq, Debug, Deserialize)]
+pub(crate) struct FileReport {
+    pub(crate) vertices: usize,
+    pub(crate) triangles: usize,
+    /// Only of 3MF files, as the next two.
+    pub(crate) warnings: Option<usize>,
+    pub(crate) manifold: Option<bool>,
+    pub(crate) unit: Option<u32>,
+    pub(crate) materials: usize,
+    pub(crate) volume: f64,
+}
+
+/// Lets lib3mf (strict) read 3MF files and plyfile PLY files; reports are in the order of the paths.
+pub(crate) fn file_reports<P: AsRef<Path>>(paths: &[P]) -> Vec<FileReport> {
+    let script = Path::new(ROOT).join("tests/python/mesh_files.py");
+    let mut command = Command::new(validators());
+    command.arg(script).args(paths.iter().map(AsRef::as_ref));
+    let output = run(&mut command, "the validators cannot be run");
+    serde_json::from_slice(&output.stdout).expect("the validators print JSON")
+}
+
 /// Path of a Python interpreter that has the packages of `tests/python/requirements.txt`.
 ///
 /// Makes the environment when it is missing or was made for other requirements; of several test

@@ -20,6 +20,16 @@ pub(super) fn color(materials: &[Material], id: MaterialId) -> [f32; 4] {
     })
 }
 
+/// Colour of a material as sRGB with alpha, in bytes.
+pub(super) fn bytes(materials: &[Material], id: MaterialId) -> [u8; 4] {
+    #[expect(
+        clippy::cast_possible_truncation,
+        clippy::cast_sign_loss,
+        reason = "channels are in [0, 1]"
+    )]
+    color(materials, id).map(|channel| (channel * 255.0).round() as u8)
+}
+
 /// From sRGB to linear light. Source: IEC 61966-2-1.
 pub(super) fn linear(channel: f32) -> f32 {
     if channel <= 0.040_45 {

@@ -6,15 +6,20 @@
 //! empty solid is legal everywhere.
 
 mod appearance;
+mod decimal;
 mod error;
+mod unit;
 
 pub mod atomic;
 pub mod gltf;
 pub mod obj;
 pub mod picture;
+pub mod ply;
 pub mod stl;
+pub mod threemf;
 
 pub use error::Error;
+pub use unit::Unit;
 
 #[cfg(test)]
 #[allow(dead_code, reason = "each crate's tests need other samples")]

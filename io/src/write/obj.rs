@@ -1,11 +1,12 @@
 //! Wavefront OBJ with its material library.
 //!
-//! Vertices are shared, so the file is a watertight mesh by its indices alone. Facets are sorted
-//! into one group a primitive, sense and material. Numbers are the shortest decimals that read
-//! back to the same 64-bit value.
+//! Vertices are shared, so the file is a watertight mesh by its indices alone; normals have
+//! indices of their own. Facets are sorted into one group a face, named by primitive, sense and
+//! material. Numbers are the shortest decimals that read back to the same 64-bit value.
 
-use super::{Error, GENERATOR, appearance};
-use brep::{Brep, Corners, FacetView, Groups, Valid};
+use super::decimal::Decimal;
+use super::{Error, GENERATOR, Unit, appearance};
+use brep::{Brep, Corners, FaceId, FacetView, Groups, Shading, Valid};
 use csg::{Material, MaterialId, PrimitiveId, Sense};
 use std::fmt;
 use std::io::Write;
@@ -15,22 +16,47 @@ use std::io::Write;
 pub struct Options {
     /// Name of the material library beside the file, for `mtllib`; `None`: no materials.
     pub material_library: Option<String>,
-    /// Whether to write normals. Some readers then give each corner a vertex of its own, and no
-    /// longer see that the mesh is closed.
-    pub normals: bool,
+    /// What a model unit is, for a comment: the format has no unit.
+    pub unit: Option<Unit>,
 }
 
-/// Writes the boundary.
+/// Writes the boundary without normals.
 ///
 /// # Errors
 /// [`Error::Io`].
 pub fn write(brep: &Valid<Brep>, options: &Options, out: &mut impl Write) -> Result<(), Error> {
+    write_corners(brep, None, options, out)
+}
+
+/// Writes the boundary with normals, several at a vertex where faces meet in a crease.
+///
+/// Positions stay shared, but some readers give each corner a vertex of its own and no longer
+/// see that the mesh is closed.
+///
+/// # Errors
+/// [`Error::Io`].
+pub fn write_shaded(
+    brep: &Valid<Brep>,
+    shading: &Shading,
+    options: &Options,
+    out: &mut impl Write,
+) -> Result<(), Error> {
+    write_corners(brep, Some(&shading.corners), options, out)
+}
+
+fn write_corners(
+    brep: &Valid<Brep>,
+    corners: Option<&Corners>,
+    options: &Options,
+    out: &mut impl Write,
+) -> Result<(), Error> {
     writeln!(out, "# {GENERATOR}")?;
     writeln!(
         out,
-        "# {} vertices, {} triangles, model units, counter-clockwise seen from outside",
+        "# {} vertices, {} triangles, unit: {}, counter-clockwise seen from outside",
         brep.vertex_count(),
-        brep.facet_count()
+        brep.facet_count(),
+        options.unit.map_or("not said", Unit::name)
     )?;
     if let Some(library) = &options.material_library {
         writeln!(out, "mtllib {library}")?;
@@ -39,17 +65,20 @@ pub fn write(brep: &Valid<Brep>, options: &Options, out: &mut impl Write) -> Res
         let [x, y, z] = vertex.position().to_array().map(Decimal);
         writeln!(out, "v {x} {y} {z}")?;
     }
-    let corners = options
-        .normals
-        .then(|| Corners::of(brep, &Groups::of(brep)));
     for corner in corners.iter().flat_map(|corners| &corners.corners) {
-        let [x, y, z] = corner.normal.as_vec3().to_array();
+        // Adding zero turns −0 into 0.
+        let [x, y, z] = corner
+            .normal
+            .as_vec3()
+            .to_array()
+            .map(|number| number + 0.0);
         writeln!(out, "vn {x} {y} {z}")?;
     }
     let numbers = brep.number_vertices();
+    let faces = Groups::of(brep);
     let mut facets: Vec<(Group, FacetView<'_>)> = brep
         .facets()
-        .map(|facet| (Group::of(facet), facet))
+        .map(|facet| (Group::of(facet, &faces), facet))
         .collect();
     facets.sort_by_key(|(group, _)| *group);
     let mut current: Option<Group> = None;
@@ -65,7 +94,7 @@ pub fn write(brep: &Valid<Brep>, options: &Options, out: &mut impl Write) -> Res
         out.write_all(b"f")?;
         for half_edge in facet.half_edges() {
             let vertex = numbers[half_edge.origin().key()] + 1;
-            match &corners {
+            match corners {
                 None => write!(out, " {vertex}")?,
                 Some(corners) => {
                     let normal = corners.corner_of[half_edge.key()].0 + 1;
@@ -107,14 +136,16 @@ pub fn write_materials(
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 struct Group {
     material: MaterialId,
+    face: FaceId,
     primitive: PrimitiveId,
     sense: Sense,
 }
 
 impl Group {
-    fn of(facet: FacetView<'_>) -> Self {
+    fn of(facet: FacetView<'_>, faces: &Groups) -> Self {
         Self {
             material: facet.material(),
+            face: faces.face_of[facet.key()],
             primitive: facet.primitive(),
             sense: facet.sense(),
         }
@@ -127,27 +158,11 @@ impl fmt::Display for Group {
             Sense::Inside => "inside",
             Sense::Outside => "outside",
         };
-        let (primitive, material) = (self.primitive.0, self.material.0);
+        let (face, primitive, material) = (self.face.0, self.primitive.0, self.material.0);
         write!(
             formatter,
-            "primitive_{primitive}_{side}_material_{material}"
+            "face_{face}_primitive_{primitive}_{side}_material_{material}"
         )
-    }
-}
-
-/// Shortest decimal that reads back to the same number; exponents only where they are shorter.
-struct Decimal(f64);
-
-impl fmt::Display for Decimal {
-    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
-        // Adding zero turns −0 into 0.
-        let number = self.0 + 0.0;
-        let magnitude = number.abs();
-        if magnitude == 0.0 || (1e-5..1e16).contains(&magnitude) {
-            write!(formatter, "{number}")
-        } else {
-            write!(formatter, "{number:e}")
-        }
     }
 }
 
@@ -225,7 +240,7 @@ mod tests {
         let apart = [parts[0].clone(), moved(parts[1].clone(), |p| p + 5.0)];
         let options = Options {
             material_library: Some("part.mtl".to_owned()),
-            normals: false,
+            unit: None,
         };
         let written = text(&valid(&together(&apart)), &options);
         let starting = |word: &str| -> Vec<&str> {
@@ -240,7 +255,7 @@ mod tests {
             ["usemtl material_0", "usemtl material_1"]
         );
         assert_eq!(starting("g").len(), 7);
-        assert_eq!(starting("g")[0], "g primitive_6_inside_material_0");
+        assert_eq!(starting("g")[0], "g face_6_primitive_6_inside_material_0");
     }
 
     #[test]
@@ -268,22 +283,30 @@ mod tests {
         let brep = valid(&cube([0.0; 3], 1.0));
         let plain = text(&brep, &Options::default());
         assert!(!plain.contains("vn ") && plain.contains("\nf 1 5 7\n"));
-        let smooth = text(
-            &brep,
-            &Options {
-                normals: true,
-                ..Options::default()
-            },
-        );
+        let mut bytes = Vec::new();
+        let shading = Shading::of(&brep);
+        write_shaded(&brep, &shading, &Options::default(), &mut bytes).expect("memory");
+        let smooth = String::from_utf8(bytes).expect("ASCII");
         assert_eq!(smooth.matches("\nvn ").count(), 24);
         assert_eq!(smooth.matches("\nv ").count(), 8);
         assert_eq!(smooth.matches("//").count(), 36);
     }
 
     #[test]
-    fn numbers_are_short_and_without_negative_zero() {
-        let shown = [-0.0, 0.1, 1e16, 1e-6, -123.456, 5e-324].map(|x| Decimal(x).to_string());
-        assert_eq!(shown, ["0", "0.1", "1e16", "1e-6", "-123.456", "5e-324"]);
+    fn faces_on_one_primitive_are_groups_of_their_own() {
+        let parts = [cube([0.0; 3], 1.0), moved(cube([0.0; 3], 1.0), |p| p + 5.0)];
+        let written = text(&valid(&together(&parts)), &Options::default());
+        assert_eq!(written.matches("\ng face_").count(), 12);
+    }
+
+    #[test]
+    fn the_unit_is_said() {
+        let options = Options {
+            unit: Some(Unit::Inch),
+            ..Options::default()
+        };
+        let written = text(&valid(&cube([0.0; 3], 1.0)), &options);
+        assert!(written.contains("unit: inch,"));
     }
 
     #[test]
