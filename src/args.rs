@@ -54,6 +54,8 @@ pub(crate) enum Command {
     View(ViewArgs),
     /// Print what a model consists of, without converting it
     Info(InfoArgs),
+    /// Print area, volume, centroid and inertia, of each solid and of all together
+    Properties(PropertiesArgs),
     /// Repeat the programs and experiments of the thesis behind this program
     #[command(subcommand)]
     Thesis(ThesisCommand),
@@ -255,6 +257,19 @@ pub(crate) struct InfoArgs {
         value_names = ["XMIN", "YMIN", "ZMIN", "XMAX", "YMAX", "ZMAX"]
     )]
     pub(crate) clip: Option<Vec<f64>>,
+}
+
+/// A model to measure.
+#[derive(Args, Debug)]
+pub(crate) struct PropertiesArgs {
+    /// The model to read; `-` is standard input
+    #[arg(value_name = "IN")]
+    pub(crate) input: PathBuf,
+    #[command(flatten)]
+    pub(crate) model: ModelArgs,
+    /// Print JSON
+    #[arg(long)]
+    pub(crate) json: bool,
 }
 
 /// Where the viewer of a picture stands.

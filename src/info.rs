@@ -5,7 +5,7 @@ use crate::failure::Failure;
 use crate::input::Input;
 use crate::output;
 use crate::run::{Target, clip_box};
-use crate::summary::{counted, significant};
+use crate::summary::{counted, number, triple};
 use crate::talk::Talk;
 use csg::{FormulaNode, QuadricKind, Solid, Surface};
 use glam::DVec3;
@@ -64,40 +64,23 @@ fn to_text(solid: &Solid, name: &str, nodes: usize) -> String {
     lines.join("\n") + "\n"
 }
 
-/// Numbers for reading: nine digits, and zero for what rounding made of it.
+/// Numbers for reading, of a model of this size.
 struct Numbers {
     size: f64,
 }
 
 impl Numbers {
-    fn number(value: f64, scale: f64) -> String {
-        const NOISE: f64 = 1e-12;
-        significant(
-            if value.abs() < NOISE * scale {
-                0.0
-            } else {
-                value
-            },
-            9,
-        )
-    }
-
-    fn triple(vector: DVec3, scale: f64) -> String {
-        let [x, y, z] = vector.to_array().map(|value| Self::number(value, scale));
-        format!("({x}, {y}, {z})")
-    }
-
     fn length(&self, value: f64) -> String {
-        Self::number(value, self.size)
+        number(value, self.size)
     }
 
     fn point(&self, point: DVec3) -> String {
-        Self::triple(point, self.size)
+        triple(point, self.size)
     }
 
     fn surface(&self, surface: Surface) -> String {
         let kind = kind(surface);
-        let direction = |vector| Self::triple(vector, 1.0);
+        let direction = |vector| triple(vector, 1.0);
         match surface {
             Surface::Plane { normal, offset } => {
                 let offset = self.length(offset);
@@ -124,7 +107,7 @@ impl Numbers {
                 half_angle_rad,
             } => {
                 let (apex, angle) = (self.point(apex), half_angle_rad.to_degrees());
-                let angle = Self::number(angle, 1.0);
+                let angle = number(angle, 1.0);
                 format!(
                     "{kind}, axis {} from apex {apex}, half-angle {angle}°",
                     direction(axis)

@@ -13,6 +13,7 @@ mod memory;
 mod output;
 mod pipeline;
 mod progress;
+mod properties;
 mod report;
 mod run;
 mod shell;
@@ -58,6 +59,7 @@ fn dispatch(cli: Cli, talk: Talk) -> Result<(), Failure> {
         Some(Command::Convert(args)) => convert::run(&Conversion::new(args)?, talk),
         Some(Command::View(args)) => view::run(args, talk),
         Some(Command::Info(args)) => info::run(args, talk),
+        Some(Command::Properties(args)) => properties::run(args, talk),
         Some(Command::Thesis(command)) => thesis::run(command, talk),
         Some(Command::Completions { shell }) => shell::completions(shell),
         Some(Command::Man) => shell::manual(),

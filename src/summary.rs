@@ -1,6 +1,7 @@
 //! The closing line: what came out, in words and round numbers.
 
 use crate::report::Report;
+use glam::DVec3;
 
 /// `part.csg -> part.glb: 12,340 triangles, 1 solid, genus 5, volume 18729.7, watertight, …`.
 pub(crate) fn summary(report: &Report, outputs: &[String]) -> String {
@@ -96,8 +97,21 @@ pub(crate) fn significant(value: f64, digits: usize) -> String {
     }
 }
 
+/// With nine digits, and zero for what rounding made of it beside numbers as large as `scale`.
+pub(crate) fn number(value: f64, scale: f64) -> String {
+    const NOISE: f64 = 1e-12;
+    let is_noise = value.abs() < NOISE * scale;
+    significant(if is_noise { 0.0 } else { value }, 9)
+}
+
+/// Three such numbers: `(0, 0.5, -1)`.
+pub(crate) fn triple(vector: DVec3, scale: f64) -> String {
+    let [x, y, z] = vector.to_array().map(|value| number(value, scale));
+    format!("({x}, {y}, {z})")
+}
+
 /// A bound with two digits must not become smaller by rounding.
-fn rounded_up(bound: f64) -> String {
+pub(crate) fn rounded_up(bound: f64) -> String {
     let unit = 10_f64.powf(bound.log10().floor() - 1.0);
     let up = unit * (bound / unit).ceil();
     // 0.07 · 1.0 may print as 0.07000000000000001.

@@ -1,7 +1,8 @@
 //! Area, volume, centroid and inertia of what the boundary encloses.
 
+use crate::shells::Shells;
 use crate::sum::Sum;
-use crate::topology::Brep;
+use crate::topology::{Brep, FacetKey};
 use crate::validate::Valid;
 use csg::Aabb;
 use glam::{DMat3, DVec3};
@@ -29,8 +30,38 @@ impl Properties {
     /// and sums are compensated. Cost: linear. Source: Tonon, *Explicit exact formulas for the
     /// 3-D tetrahedron inertia tensor in terms of its vertex coordinates*, 2004.
     pub fn of(brep: &Valid<Brep>) -> Self {
-        let bounds = brep.bounds();
-        if brep.is_empty() {
+        Self::of_facets(brep, brep.facets.keys())
+    }
+
+    /// Measures each solid by itself, in the order of [`Shells::solids`], its voids taken off.
+    ///
+    /// Facets of [stray voids](Shells::stray_voids) belong to no solid. Cost: linear.
+    pub fn of_solids(brep: &Valid<Brep>, shells: &Shells) -> Vec<Self> {
+        let mut solid_of = vec![None; shells.shells.len()];
+        for (at, solid) in shells.solids.iter().enumerate() {
+            for shell in solid.voids.iter().chain([&solid.outer]) {
+                solid_of[shell.0 as usize] = Some(at);
+            }
+        }
+        let mut facets = vec![Vec::new(); shells.solids.len()];
+        for (key, shell) in &shells.shell_of {
+            if let Some(at) = solid_of[shell.0 as usize] {
+                facets[at].push(key);
+            }
+        }
+        let measure = |keys: &Vec<FacetKey>| Self::of_facets(brep, keys.iter().copied());
+        facets.iter().map(measure).collect()
+    }
+
+    /// The facets must close; without any, all measures are 0.
+    fn of_facets(brep: &Brep, keys: impl Iterator<Item = FacetKey> + Clone) -> Self {
+        let facets = keys.map(|key| brep.facet(key).positions());
+        let mut bounds = Aabb::EMPTY;
+        for position in facets.clone().flatten() {
+            bounds.min = bounds.min.min(position);
+            bounds.max = bounds.max.max(position);
+        }
+        if bounds.is_empty() {
             return Self {
                 area: 0.0,
                 volume: 0.0,
@@ -42,8 +73,8 @@ impl Properties {
         let apex = bounds.min + (bounds.max - bounds.min) * 0.5;
         let mut area = Sum::default();
         let mut moments = [Sum::default(); 10];
-        for facet in brep.facets() {
-            let [a, b, c] = facet.positions().map(|position| position - apex);
+        for positions in facets {
+            let [a, b, c] = positions.map(|position| position - apex);
             area.add((b - a).cross(c - a).length());
             for (sum, term) in moments.iter_mut().zip(tetrahedron_moments(a, b, c)) {
                 sum.add(term);
@@ -164,6 +195,31 @@ mod tests {
         assert!(close(found.volume, 64.0 - 8.0, 1e-15));
         assert!(close(found.area, 96.0 + 24.0, 1e-15));
         assert!((found.centroid + DVec3::splat(0.5 * 8.0 / 56.0)).length() < 1e-15);
+    }
+
+    #[test]
+    fn solids_are_measured_one_by_one() {
+        let brep = stitch(&together(&[
+            cube([0.0; 3], 2.0),
+            cuboid(DVec3::new(10.0, 0.0, 0.0), DVec3::new(11.0, 2.0, 3.0), 0),
+            inside_out(cube([0.5; 3], 1.0)),
+        ]))
+        .expect("closed")
+        .validate()
+        .expect("valid");
+        let solids = Properties::of_solids(&brep, &Shells::of(&brep));
+        let [hollow, block] = solids.as_slice() else {
+            panic!("{solids:?}")
+        };
+        assert!(close(hollow.volume, 64.0 - 8.0, 1e-15));
+        assert!(close(hollow.area, 96.0 + 24.0, 1e-15));
+        assert!((hollow.centroid + DVec3::splat(0.5 * 8.0 / 56.0)).length() < 1e-15);
+        assert!(close(block.volume, 6.0, 1e-15));
+        assert!(close(block.area, 22.0, 1e-15));
+        assert!((block.centroid - DVec3::new(10.5, 1.0, 1.5)).length() < 1e-14);
+        let expected = DVec3::new(4.0 + 9.0, 9.0 + 1.0, 1.0 + 4.0) * (6.0 / 12.0);
+        let expected = DMat3::from_diagonal(expected);
+        assert!(block.inertia.abs_diff_eq(expected, 1e-13), "{block:?}");
     }
 
     #[test]

@@ -1,6 +1,7 @@
 //! The command line as users see it: transcripts, and what does not fit into one.
 
 mod limits;
+mod properties;
 mod streams;
 
 /// Each `*.trycmd` is a transcript; the folder of the same name with `.in` holds its files.
