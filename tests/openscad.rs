@@ -187,6 +187,144 @@ fn hulls_of_boxes_are_exact() {
     assert_eq!(check(octahedron, 4.0 / 3.0, 0.0).groups.faces.len(), 8);
 }
 
+/// Steiner's formula for a box of sides a, b, c: its volume, slabs, edges and corners.
+#[test]
+fn rounded_boxes_obey_steiner() {
+    let [a, b, c, r] = [4.0, 3.0, 2.0, 0.5_f64];
+    let volume = a * b * c
+        + 2.0 * r * (a * b + b * c + c * a)
+        + PI * r * r * (a + b + c)
+        + 4.0 / 3.0 * PI * r.powi(3);
+    let curved = 2.0 * PI * r * (a + b + c) + 4.0 * PI * r * r;
+    let sum = format!("minkowski() {{ cube([{a}, {b}, {c}]); sphere(r = {r}); }}");
+    assert_eq!(check(&sum, volume, curved).groups.faces.len(), 26);
+    let corners: String = (0..8)
+        .map(|at: u32| {
+            let pick = |bit: u32, side: f64| if at >> bit & 1 == 1 { side } else { 0.0 };
+            let [x, y, z] = [pick(0, a), pick(1, b), pick(2, c)];
+            format!("translate([{x}, {y}, {z}]) sphere(r = {r});")
+        })
+        .collect();
+    assert_eq!(
+        check(&format!("hull() {{ {corners} }}"), volume, curved)
+            .groups
+            .faces
+            .len(),
+        26
+    );
+}
+
+/// Two balls and the frustum between the circles in which their common cone touches them.
+#[test]
+fn the_hull_of_two_balls_has_a_cone() {
+    let [big, small, gap] = [2.0, 1.0, 4.0_f64];
+    let sine: f64 = (big - small) / gap;
+    let cosine = (1.0 - sine * sine).sqrt();
+    let cap = |r: f64, height: f64| PI * height * height * (r - height / 3.0);
+    let frustum = |p: f64, q: f64, h: f64| PI * h / 3.0 * (p * p + p * q + q * q);
+    let volume = cap(big, big * (1.0 + sine))
+        + cap(small, small * (1.0 - sine))
+        + frustum(big * cosine, small * cosine, gap - (big - small) * sine);
+    let source =
+        format!("hull() {{ sphere(r = {big}); translate([{gap}, 0, 0]) sphere(r = {small}); }}");
+    let found = check(&source, volume, 100.0);
+    assert_eq!(found.groups.faces.len(), 3);
+}
+
+/// A rounded cylinder by Steiner: V + r·A + r²·M + 4/3·π·r³ with the mean curvature integral
+/// M = π·h + π²·R of a cylinder.
+#[test]
+fn rounded_cylinders_end_in_tori() {
+    let [radius, h, r] = [2.0, 3.0, 0.5_f64];
+    let volume = PI * radius * radius * h
+        + r * (2.0 * PI * radius * h + 2.0 * PI * radius * radius)
+        + r * r * (PI * h + PI * PI * radius)
+        + 4.0 / 3.0 * PI * r.powi(3);
+    let source = format!("minkowski() {{ cylinder(h = {h}, r = {radius}); sphere(r = {r}); }}");
+    check(&source, volume, 80.0);
+}
+
+/// A square frame, grown by a cylinder: the frame's outline grows by r, its hole shrinks.
+#[test]
+fn sums_with_dented_bodies_are_exact() {
+    let frame = "difference() { cube([10, 10, 5]); translate([2, 2, -1]) cube([6, 6, 9]); }";
+    let r = 1.0_f64;
+    let area = 100.0 + 40.0 * r + PI * r * r - (6.0 - 2.0 * r).powi(2);
+    let source = format!("minkowski() {{ {frame} cylinder(h = 2, r = {r}); }}");
+    let found = check(&source, area * 7.0, 2.0 * PI * 7.0);
+    assert_eq!(found.shells.genus(), 1);
+    let source = format!("minkowski() {{ {frame} cube([1, 2, 3]); }}");
+    check(&source, (11.0 * 12.0 - 5.0 * 4.0) * 8.0, 0.0);
+}
+
+#[test]
+fn outlines_move_as_their_formulas_say() {
+    for (figure, area, arcs) in [
+        ("offset(r = 1) square(4)", 16.0 + 16.0 + PI, 2.0 * PI),
+        ("offset(r = -1) square(4)", 4.0, 0.0),
+        ("offset(delta = 1) square(4)", 36.0, 0.0),
+        ("offset(delta = -1) square(4)", 4.0, 0.0),
+        // Corners are cut off at distance 1: at each, a triangle of height √2 − 1 is missing.
+        (
+            "offset(delta = 1, chamfer = true) square(4)",
+            36.0 - 4.0 * (2.0_f64.sqrt() - 1.0).powi(2),
+            0.0,
+        ),
+        ("offset(r = 1) circle(r = 2)", 9.0 * PI, 6.0 * PI),
+        // An L of three unit squares; at its dent the strips overlap.
+        (
+            "offset(r = 0.5) polygon(points = [[0,0],[2,0],[2,1],[1,1],[1,2],[0,2]])",
+            3.0 + 4.0 - 0.25 + 1.25 * PI * 0.25,
+            1.25 * PI,
+        ),
+        (
+            "offset(r = 1) offset(r = -1) square(4)",
+            12.0 + PI,
+            2.0 * PI,
+        ),
+        ("minkowski() { square(4); square(2); }", 36.0, 0.0),
+        (
+            "minkowski() { square(4); circle(r = 1); }",
+            32.0 + PI,
+            2.0 * PI,
+        ),
+        (
+            "fill() difference() { square(4); translate([1, 1]) square(1); }",
+            16.0,
+            0.0,
+        ),
+        ("resize([8, 0], auto = true) square([4, 2])", 32.0, 0.0),
+        (
+            "projection(cut = true) translate([0, 0, 3]) sphere(r = 5)",
+            16.0 * PI,
+            8.0 * PI,
+        ),
+        (
+            "projection() rotate([45, 0, 0]) cube(1)",
+            2.0_f64.sqrt(),
+            0.0,
+        ),
+        (
+            "projection() difference() { cube(3); translate([1, 1, -1]) cube([1, 1, 5]); }",
+            8.0,
+            0.0,
+        ),
+        (
+            "projection(cut = true) difference() { cube(3, center = true); cube(1, center = true); }",
+            8.0,
+            0.0,
+        ),
+    ] {
+        let source = format!("linear_extrude(height = 1) {figure};");
+        check(&source, area, arcs);
+    }
+    check(
+        "resize([4, 0, 2], auto = [false, true, false]) cube([2, 3, 5]);",
+        48.0,
+        0.0,
+    );
+}
+
 /// A torus of flat triangles against the divergence theorem's sum over them.
 #[test]
 fn dented_polyhedra_have_the_volume_of_their_mesh() {

@@ -89,6 +89,54 @@ impl ModelBuilder {
         MaterialId(u32::try_from(at).unwrap_or(u32::MAX))
     }
 
+    /// A node with all that it is made of, as a model of its own.
+    #[must_use]
+    pub fn subtree(&self, root: NodeId) -> Model {
+        let mut needed = std::collections::BTreeSet::new();
+        let mut waiting = vec![root];
+        while let Some(id) = waiting.pop() {
+            if !needed.insert(id) {
+                continue;
+            }
+            match self.nodes.get(id.index()) {
+                Some(Node::Union(all) | Node::Intersection(all) | Node::Difference(all)) => {
+                    waiting.extend(all);
+                }
+                Some(
+                    Node::Complement(child) | Node::Instance(_, child) | Node::Painted(_, child),
+                ) => waiting.push(*child),
+                Some(Node::Shape(_)) | None => {}
+            }
+        }
+        // Children come before parents here as there.
+        let mut renumbered = std::collections::BTreeMap::new();
+        let mut nodes = Vec::with_capacity(needed.len());
+        for id in needed {
+            let Some(mut node) = self.nodes.get(id.index()).cloned() else {
+                continue;
+            };
+            let rename = |child: &mut NodeId| {
+                *child = renumbered.get(child).copied().unwrap_or(*child);
+            };
+            match &mut node {
+                Node::Union(all) | Node::Intersection(all) | Node::Difference(all) => {
+                    all.iter_mut().for_each(rename);
+                }
+                Node::Complement(child) | Node::Instance(_, child) | Node::Painted(_, child) => {
+                    rename(child);
+                }
+                Node::Shape(_) => {}
+            }
+            renumbered.insert(id, NodeId(u32::try_from(nodes.len()).unwrap_or(u32::MAX)));
+            nodes.push(node);
+        }
+        Model {
+            root: renumbered.get(&root).copied().unwrap_or(root),
+            nodes,
+            materials: self.materials.clone(),
+        }
+    }
+
     /// Ends the model with this root.
     #[must_use]
     pub fn finish(self, root: NodeId) -> Model {

@@ -127,6 +127,14 @@ impl Shape {
         ConvexPolyhedron::from_faces(vertices, faces).map(Self::ConvexPolyhedron)
     }
 
+    /// See [`ConvexPolyhedron::from_hull`].
+    ///
+    /// # Errors
+    /// Those of [`ConvexPolyhedron::from_hull`].
+    pub fn convex_hull(vertices: &[DVec3], triangles: &[Vec<usize>]) -> Result<Self, Error> {
+        ConvexPolyhedron::from_hull(vertices, triangles).map(Self::ConvexPolyhedron)
+    }
+
     /// The shape as a union of intersections of half-spaces `p ≤ 0`, in its own coordinates.
     ///
     /// All shapes but a self-crossing torus are a single intersection.

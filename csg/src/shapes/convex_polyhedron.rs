@@ -15,6 +15,14 @@ pub struct ConvexPolyhedron {
     planes: Vec<HalfSpace>,
 }
 
+/// Longest side of a polygon.
+fn longest_side(vertices: &[DVec3], corners: &[usize]) -> f64 {
+    let next = corners.iter().cycle().skip(1);
+    let sides = corners.iter().zip(next);
+    let sides = sides.map(|(a, b)| vertices[*a].distance(vertices[*b]));
+    sides.fold(0.0, f64::max)
+}
+
 /// How far a vertex may lie from a plane to count as lying in it, in diagonals of the polyhedron.
 ///
 /// OpenSCAD writes coordinates with six digits, so faces with four and more vertices are planar
@@ -33,6 +41,19 @@ impl ConvexPolyhedron {
     /// [`Error::NotConvex`], [`Error::OpenPolyhedron`] unless every edge joins two faces and
     /// they enclose a volume.
     pub fn from_faces(vertices: &[DVec3], faces: &[Vec<usize>]) -> Result<Self, Error> {
+        Self::build(vertices, faces, false)
+    }
+
+    /// Takes the triangles of a convex hull, of which some may be thin for want of digits: such
+    /// ones, no higher than a vertex may lie from its plane, bound nothing.
+    ///
+    /// # Errors
+    /// Those of [`ConvexPolyhedron::from_faces`] but [`Error::FlatFace`].
+    pub fn from_hull(vertices: &[DVec3], triangles: &[Vec<usize>]) -> Result<Self, Error> {
+        Self::build(vertices, triangles, true)
+    }
+
+    fn build(vertices: &[DVec3], faces: &[Vec<usize>], may_be_thin: bool) -> Result<Self, Error> {
         for v in vertices {
             finite("vertex", v.length())?;
         }
@@ -50,8 +71,11 @@ impl ConvexPolyhedron {
         areas.sort_by(|a, b| b.1.length_squared().total_cmp(&a.1.length_squared()));
         let mut planes: Vec<(DVec3, f64)> = Vec::new();
         for (face, area) in areas {
-            let normal = area.try_normalize().ok_or(Error::FlatFace { face })?;
             let corners = &faces[face];
+            if may_be_thin && area.length() <= 2.0 * flat * longest_side(vertices, corners) {
+                continue;
+            }
+            let normal = area.try_normalize().ok_or(Error::FlatFace { face })?;
             let mean = corners.iter().map(|&v| vertices[v]).sum::<DVec3>() / corners.len() as f64;
             let outward = if normal.dot(mean - center) < 0.0 {
                 -normal

@@ -8,7 +8,8 @@
 //! value     := NUMBER | 'true' | 'false' | 'undef' | 'inf' | 'nan' | STRING | '[' (value (',' value)*)? ']'
 //! ```
 //! Nodes: `union group render intersection difference color multmatrix translate rotate scale
-//! mirror cube sphere cylinder polyhedron linear_extrude rotate_extrude square circle polygon hull`,
+//! mirror resize cube sphere cylinder polyhedron linear_extrude rotate_extrude hull minkowski
+//! projection square circle polygon offset fill`,
 //! as OpenSCAD means them (`docs/openscad.md` says how exactly); of this project's own:
 //!
 //! | node | solid |
@@ -25,10 +26,13 @@
 
 mod arguments;
 mod ast;
+mod ball_hull;
+mod body;
 mod color;
 mod combine;
 mod complaints;
 mod evaluate;
+mod facets;
 mod figure;
 mod motion;
 mod nodes;
@@ -36,7 +40,11 @@ mod parse;
 mod point_hull;
 mod polyhedron;
 mod program;
+mod reshape;
+mod rounded;
 mod shapes;
+mod solid_hull;
+mod solid_sum;
 mod token;
 
 use super::diagnostic::{Diagnostics, Source};

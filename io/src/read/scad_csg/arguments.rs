@@ -125,6 +125,26 @@ impl<'a> Arguments<'a> {
         }
     }
 
+    /// One flag, or a list of them; none if missing.
+    pub(super) fn flags(
+        &self,
+        parameter: &str,
+        complaints: &mut Complaints<'_>,
+    ) -> Result<Vec<bool>, Reported> {
+        let Some(value) = self.find(parameter) else {
+            return Ok(Vec::new());
+        };
+        if !matches!(self.ast.value(value).0, Value::List { .. }) {
+            return Ok(vec![self.flag(parameter, complaints)?]);
+        }
+        let each = self.ast.elements(value).map(|at| match self.ast.value(at) {
+            (Value::Bool(flag), _) => Ok(flag),
+            (Value::Number(number), _) => Ok(number != 0.0),
+            (_, at) => Err(self.wrong_type(parameter, "a list of true or false", at, complaints)),
+        });
+        each.collect()
+    }
+
     /// A string without its quotes, if given.
     pub(super) fn string(
         &self,

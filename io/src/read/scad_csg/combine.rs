@@ -1,11 +1,12 @@
 //! What becomes of a node's children once they are all evaluated.
 
 use super::evaluate::{Evaluator, Frame, Operand};
-use super::figure::{self, Extrusion, Figure, FigureId, Refusal, Unhullable};
-use super::point_hull::{self, NoHull};
-use super::polyhedron::Part;
+use super::figure::{self, Extrusion, Figure, FigureId, Offset, Refusal};
+use super::polyhedron::{self, Part};
+use super::reshape::Resize;
+use super::rounded::Made;
 use super::token::Span;
-use csg::{MaterialId, Node, NodeId, Shape, Transform};
+use csg::{MaterialId, ModelBuilder, Node, NodeId, Transform};
 use glam::{DAffine2, DMat2, DVec2};
 
 /// What a node does with its children.
@@ -17,6 +18,14 @@ pub(super) enum Operation {
     Paint(MaterialId),
     Extrude(Extrusion),
     Hull,
+    Minkowski,
+    Offset(Offset),
+    Fill,
+    Resize(Resize),
+    /// To the plane z = 0: the section, if `cut`, or the shadow.
+    Projection {
+        cut: bool,
+    },
 }
 
 impl Evaluator<'_, '_> {
@@ -44,7 +53,11 @@ impl Evaluator<'_, '_> {
         let Some(first) = kinds.next() else {
             return Operand::Nothing;
         };
-        let flat_at = if extrudes {
+        let projects = matches!(frame.operation, Operation::Projection { .. });
+        let flat_at = if projects {
+            let solid = std::iter::once(first).chain(kinds).find(Option::is_none);
+            solid.unwrap_or(first)
+        } else if extrudes {
             std::iter::once(first).chain(kinds).flatten().next()
         } else {
             first
@@ -90,7 +103,9 @@ impl Evaluator<'_, '_> {
             Operation::Union | Operation::Intersection | Operation::Difference if is_alone => first,
             Operation::Intersection => self.builder.add(Node::Intersection(solids)),
             Operation::Difference => self.builder.add(Node::Difference(solids)),
-            Operation::Union | Operation::Extrude(_) => self.builder.add(Node::Union(solids)),
+            Operation::Union | Operation::Extrude(_) | Operation::Offset(_) | Operation::Fill => {
+                self.builder.add(Node::Union(solids))
+            }
             Operation::Move(transform) => {
                 let all = self.union(solids);
                 self.builder.add(Node::Instance(transform.clone(), all))
@@ -100,69 +115,77 @@ impl Evaluator<'_, '_> {
                 self.builder.add(Node::Painted(*material, all))
             }
             Operation::Hull => return self.hull(frame, &solids),
+            Operation::Minkowski if is_alone => first,
+            Operation::Minkowski => return self.solid_sum(frame, &solids),
+            Operation::Resize(resize) => {
+                let all = self.union(solids);
+                return self.resized(frame, all, resize);
+            }
+            Operation::Projection { cut } => {
+                let all = self.union(solids);
+                return self.projection(frame, all, *cut);
+            }
         })
     }
 
-    fn hull(&mut self, frame: &Frame, solids: &[NodeId]) -> Operand {
-        let found = point_hull::vertices(&self.builder, solids);
-        let what = match found {
-            Err(NoHull::Curved) => "of solids that have curved faces or are cut",
-            Err(NoHull::Many) => "of solids with so many vertices",
-            Ok(points) => {
-                let Some(mut faces) = point_hull::triangles(&points) else {
-                    return Operand::Nothing;
-                };
-                let vertices = point_hull::used(&points, &mut faces);
-                return match Shape::convex_polyhedron(&vertices, &faces) {
-                    Ok(shape) => Operand::Solid(self.builder.add(Node::Shape(shape))),
-                    Err(error) => {
-                        self.complaints.error(frame.name, error.to_string(), None);
-                        Operand::Unusable
-                    }
-                };
+    /// What a closed form gave.
+    pub(super) fn made(&mut self, frame: &Frame, made: Made) -> Operand {
+        match made {
+            Ok(Some(solid)) => Operand::Solid(solid),
+            Ok(None) => Operand::Nothing,
+            Err(error) => {
+                self.complaints.error(frame.name, error.to_string(), None);
+                Operand::Unusable
             }
-        };
-        self.complaints.error_once(
-            &format!("hull {what}"),
+        }
+    }
+
+    /// Warns that a node has no closed form and became something flat within a distance.
+    pub(super) fn approximate(&mut self, frame: &Frame, what: &str, error: f64) {
+        let name = frame.name.of(self.text);
+        self.complaints.warn_once(
+            &format!("approximate {name}"),
             frame.name,
-            format!("`hull` {what} is not supported"),
-            Some("write the hull as a union of shapes".to_owned()),
+            format!(
+                "`{name}` has no closed form here; it is taken as a {what} within {error:.2e} of it"
+            ),
+            None,
+        );
+    }
+
+    /// An error: a node's result could not be made.
+    pub(super) fn not_closed(&mut self, frame: &Frame) -> Operand {
+        let name = frame.name.of(self.text);
+        self.complaints.error_once(
+            &format!("intricate {name}"),
+            frame.name,
+            format!("`{name}` of what stands here is unbounded or too intricate"),
+            Some("write the result as a union of shapes".to_owned()),
         );
         Operand::Unusable
     }
 
-    /// The nodes of a formula.
-    pub(super) fn formula(&mut self, parts: Vec<Part>) -> NodeId {
-        let mut open: Vec<(bool, Vec<NodeId>)> = vec![(true, Vec::new())];
-        for part in parts {
-            let node = match part {
-                Part::Open { union } => {
-                    open.push((union, Vec::new()));
-                    continue;
-                }
-                Part::Shape { shape, inside } => {
-                    let shape = self.builder.add(Node::Shape(shape));
-                    if inside {
-                        shape
-                    } else {
-                        self.builder.add(Node::Complement(shape))
-                    }
-                }
-                Part::Close => match open.pop() {
-                    Some((true, all)) => self.builder.add(Node::Union(all)),
-                    Some((false, all)) => self.builder.add(Node::Intersection(all)),
-                    None => continue,
-                },
-            };
-            if let Some((_, all)) = open.last_mut() {
-                all.push(node);
-            }
-        }
-        let all = open.pop().map(|(_, all)| all).unwrap_or_default();
-        self.union(all)
+    /// An error: numbers are too large or too small.
+    pub(super) fn out_of_range(&mut self, frame: &Frame) -> Operand {
+        let name = frame.name.of(self.text);
+        let message = format!("numbers below `{name}` are beyond floating point");
+        self.complaints.error(frame.name, message, None);
+        Operand::Unusable
     }
 
-    fn union(&mut self, solids: Vec<NodeId>) -> NodeId {
+    /// A polyhedron from polygons that close, counter-clockwise from outside.
+    pub(super) fn closed_polyhedron(&mut self, polygons: Vec<Vec<glam::DVec3>>) -> Option<NodeId> {
+        let parts = polyhedron::dented(polygons).ok()?;
+        Some(self.formula(parts))
+    }
+
+    /// The nodes of a formula.
+    pub(super) fn formula(&mut self, parts: Vec<Part>) -> NodeId {
+        formula(parts, &mut self.builder)
+    }
+
+    /// The union, without a node of its own if there is only one.
+    pub(super) fn union(&mut self, solids: Vec<NodeId>) -> NodeId {
         match solids[..] {
             [only] => only,
             _ => self.builder.add(Node::Union(solids)),
@@ -194,12 +217,26 @@ impl Evaluator<'_, '_> {
             }
             Operation::Hull => {
                 let all = self.figures.union(figures);
-                match self.figures.hull(all) {
-                    Ok(Some(hull)) => hull,
-                    Ok(None) => return Operand::Nothing,
-                    Err(why) => return self.no_hull(frame, why),
-                }
+                let found = self.figures.hull(all);
+                return self.found(frame, found, at);
             }
+            Operation::Offset(by) => {
+                let all = self.figures.union(figures);
+                let found = self.figures.offset(all, *by);
+                return self.found(frame, found, at);
+            }
+            Operation::Fill => {
+                let all = self.figures.union(figures);
+                let found = self.figures.fill(all);
+                return self.found(frame, found, at);
+            }
+            Operation::Minkowski => return self.figure_sum(frame, figures, at),
+            Operation::Resize(resize) => {
+                let all = self.figures.union(figures);
+                self.resized_figure(all, resize)
+            }
+            // Only solids are projected; a warning was given.
+            Operation::Projection { .. } => return Operand::Nothing,
         };
         Operand::Flat(figure, at)
     }
@@ -223,6 +260,14 @@ impl Evaluator<'_, '_> {
                 );
                 Operand::Unusable
             }
+            Err(Refusal::Twisted) => {
+                self.complaints.error(
+                    frame.name,
+                    "the figure is twisted so much from slice to slice that it crosses itself",
+                    "use more slices".to_owned(),
+                );
+                Operand::Unusable
+            }
             Err(Refusal::Numbers(error)) => {
                 self.complaints.error(frame.name, error.to_string(), None);
                 Operand::Unusable
@@ -230,19 +275,40 @@ impl Evaluator<'_, '_> {
         }
     }
 
-    fn no_hull(&mut self, frame: &Frame, why: Unhullable) -> Operand {
-        let what = match why {
-            Unhullable::Cut => "of intersections and differences",
-            Unhullable::Ellipse => "of stretched circles",
-            Unhullable::Many => "of more than 200 circles and points",
+    fn figure_sum(&mut self, frame: &Frame, figures: Vec<FigureId>, at: Span) -> Operand {
+        let mut figures = figures.into_iter();
+        let Some(mut sum) = figures.next() else {
+            return Operand::Nothing;
         };
-        self.complaints.error_once(
-            &format!("hull {what}"),
-            frame.name,
-            format!("`hull` {what} is not supported"),
-            Some("write the resulting outline as polygons and circles".to_owned()),
-        );
-        Operand::Unusable
+        let mut is_exact = true;
+        for figure in figures {
+            match self.figures.minkowski(sum, figure) {
+                None => return self.not_closed(frame),
+                Some((None, _)) => return Operand::Nothing,
+                Some((Some(found), exact)) => {
+                    sum = found;
+                    is_exact &= exact;
+                }
+            }
+        }
+        self.found(frame, (Some(sum), is_exact), at)
+    }
+
+    /// A figure, with a warning unless it is exact.
+    fn found(
+        &mut self,
+        frame: &Frame,
+        (figure, exact): (Option<FigureId>, bool),
+        at: Span,
+    ) -> Operand {
+        let Some(figure) = figure else {
+            return Operand::Nothing;
+        };
+        if !exact {
+            let error = self.figures.sagitta(figure);
+            self.approximate(frame, "polygon", error);
+        }
+        Operand::Flat(figure, at)
     }
 }
 
@@ -253,4 +319,38 @@ fn in_plane(transform: &Transform) -> Option<DAffine2> {
     let by = DAffine2::from_mat2_translation(matrix, DVec2::new(x[3], y[3]));
     let size = matrix.x_axis.length() * matrix.y_axis.length();
     (matrix.determinant().abs() > 1e-12 * size && by.is_finite()).then_some(by)
+}
+
+/// The nodes of a formula.
+pub(super) fn formula(parts: Vec<Part>, builder: &mut ModelBuilder) -> NodeId {
+    let mut open: Vec<(bool, Vec<NodeId>)> = vec![(true, Vec::new())];
+    for part in parts {
+        let node = match part {
+            Part::Open { union } => {
+                open.push((union, Vec::new()));
+                continue;
+            }
+            Part::Shape { shape, inside } => {
+                let shape = builder.add(Node::Shape(shape));
+                if inside {
+                    shape
+                } else {
+                    builder.add(Node::Complement(shape))
+                }
+            }
+            Part::Close => match open.pop() {
+                Some((true, all)) => builder.add(Node::Union(all)),
+                Some((false, all)) => builder.add(Node::Intersection(all)),
+                None => continue,
+            },
+        };
+        if let Some((_, all)) = open.last_mut() {
+            all.push(node);
+        }
+    }
+    let all = open.pop().map(|(_, all)| all).unwrap_or_default();
+    match all[..] {
+        [only] => only,
+        _ => builder.add(Node::Union(all)),
+    }
 }

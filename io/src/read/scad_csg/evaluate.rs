@@ -8,6 +8,7 @@ use super::complaints::{Complaints, Reported};
 use super::figure::{self, Figure, FigureId, Figures};
 use super::motion::{self, Moved};
 use super::nodes::{self, Entry, Kind};
+use super::reshape::Resize;
 use super::shapes::{ShapeReader, Volume};
 use super::token::Span;
 use crate::read::ReadOptions;
@@ -211,6 +212,16 @@ impl Evaluator<'_, '_> {
                 Step::Open(Operation::Extrude(extrusion))
             }
             Kind::Hull => Step::Open(Operation::Hull),
+            Kind::Minkowski => Step::Open(Operation::Minkowski),
+            Kind::Fill => Step::Open(Operation::Fill),
+            Kind::Offset => Step::Open(match figure::offset(&arguments, complaints)? {
+                Some(by) => Operation::Offset(by),
+                None => Operation::Union,
+            }),
+            Kind::Resize => Step::Open(Operation::Resize(Resize::read(&arguments, complaints)?)),
+            Kind::Projection => Step::Open(Operation::Projection {
+                cut: arguments.flag("cut", complaints)?,
+            }),
             Kind::Figure(leaf) => {
                 let sides = self.shapes.sides(&arguments);
                 let region = figure::leaf(leaf, sides, &arguments, complaints)?;

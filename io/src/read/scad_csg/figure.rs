@@ -6,15 +6,19 @@
 
 mod chain;
 mod disc_hull;
+mod loops;
+mod offset;
 mod polygon;
 mod read;
 mod revolve;
 mod solid;
 mod taper;
+mod twist;
 
-pub(super) use chain::{doubled_area, turn};
-pub(super) use disc_hull::Unhullable;
-pub(super) use read::{Extrusion, FigureLeaf, extrusion, leaf};
+pub(super) use chain::{doubled_area, hull as convex_ring, turn};
+pub(super) use loops::Loops;
+pub(super) use offset::Offset;
+pub(super) use read::{Extrusion, FigureLeaf, extrusion, leaf, offset};
 pub(super) use solid::{Refusal, extrude};
 
 use glam::{DAffine2, DMat3, DVec2, DVec3};
@@ -47,8 +51,12 @@ pub(super) struct Region {
 enum Outline {
     /// A circle about the origin.
     Circle(f64),
-    /// Corners, whose hull is that of the region.
-    Corners { at: Vec<DVec2>, convex: bool },
+    /// Corners, whose hull is that of the region, and all loops, filled on their left.
+    Corners {
+        at: Vec<DVec2>,
+        loops: Vec<Vec<DVec2>>,
+        convex: bool,
+    },
 }
 
 /// A part of a formula in prefix order.
@@ -307,4 +315,15 @@ impl Region {
         }
         open.pop().is_some_and(|(_, value)| value)
     }
+}
+
+/// The corners of the convex hull of points.
+pub(super) fn convex_corners(points: &[DVec2]) -> Vec<DVec2> {
+    let ring = convex_ring(points).into_iter();
+    ring.filter_map(|i| points.get(i).copied()).collect()
+}
+
+/// The area within loops, those that turn clockwise counted as negative.
+pub(super) fn signed_area(loops: &[Vec<DVec2>]) -> f64 {
+    loops.iter().map(|one| 0.5 * doubled_area(one)).sum()
 }

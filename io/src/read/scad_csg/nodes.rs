@@ -25,6 +25,16 @@ pub(super) enum Kind {
     RotateExtrude,
     /// The convex hull of its children.
     Hull,
+    /// The Minkowski sum of its children.
+    Minkowski,
+    /// Its children, plane figures, with their outline moved.
+    Offset,
+    /// Its children, plane figures, without their holes.
+    Fill,
+    /// Its children, scaled to a given size.
+    Resize,
+    /// The section or shadow of its children, a plane figure.
+    Projection,
     /// A node of OpenSCAD's that this reader refuses, and what to do instead.
     Refused(&'static str),
 }
@@ -104,7 +114,6 @@ const fn refused(name: &'static str, remedy: &'static str) -> Entry {
 }
 
 const FONT: &str = "convert the text to polygons first, for instance by exporting it as SVG";
-const OUTLINE: &str = "write the resulting outline as polygons and circles";
 const MESH: &str = "write the part as unions, intersections and differences of shapes";
 const FILE: &str = "only what is written in the dump itself is read: write the shape in place";
 
@@ -150,14 +159,11 @@ const ENTRIES: [Entry; 42] = [
         &["points", "faces", "triangles"],
     ),
     refused("text", FONT),
-    refused("offset", OUTLINE),
-    refused("projection", OUTLINE),
-    refused("fill", OUTLINE),
-    refused("minkowski", MESH),
-    refused(
-        "resize",
-        "write the factors with scale(), which needs no measuring",
-    ),
+    entry("offset", Kind::Offset, &["r", "delta", "chamfer"]),
+    entry("projection", Kind::Projection, &["cut"]),
+    entry("fill", Kind::Fill, &[]),
+    entry("minkowski", Kind::Minkowski, &[]),
+    entry("resize", Kind::Resize, &["newsize", "auto"]),
     refused("import", FILE),
     refused("import_stl", FILE),
     refused("import_off", FILE),

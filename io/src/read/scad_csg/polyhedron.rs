@@ -9,12 +9,14 @@ use super::complaints::{Complaints, Reported};
 use super::shapes::{Volume, finish};
 use super::token::Span;
 use csg::{Error, Shape};
-use faces::{Faces, Unsound};
+use faces::Faces;
+pub(super) use faces::Unsound;
 use glam::DVec3;
 use partition::Piece;
 
-/// More faces are not tried as a convex body, which takes quadratic time.
-const MAX_CONVEX: usize = 2000;
+/// More faces are not tried as a convex body: all their planes would stand in one intersection,
+/// of which many matter in each place.
+const MAX_CONVEX: usize = 200;
 
 /// Polyhedra with more faces are meshes of curved bodies.
 const MAX_FACES: usize = 20_000;
@@ -112,7 +114,7 @@ pub(super) fn read(
 }
 
 /// Why a polyhedron has no formula.
-enum Fault {
+pub(super) enum Fault {
     Unsound(Unsound),
     Numbers(Error),
 }
@@ -130,14 +132,29 @@ impl From<Error> for Fault {
 }
 
 /// The formula of a polyhedron that is not convex.
-fn dented(polygons: Vec<Vec<DVec3>>) -> Result<Vec<Part>, Fault> {
-    let faces = Faces::new(polygons)?;
-    let pieces = partition::formula(&faces)?;
-    if !partition::is_bounded_by(&pieces, &faces) {
+pub(super) fn dented(polygons: Vec<Vec<DVec3>>) -> Result<Vec<Part>, Fault> {
+    let mut faces = Faces::new(polygons)?;
+    let margin = DVec3::splat(MARGIN * faces.size);
+    let around = [faces.min - margin, faces.max + margin];
+    within(&mut faces, around)
+}
+
+/// The formula of walls that separate inside from outside between two heights, the lowest and
+/// the highest of their corners.
+pub(super) fn walls(triangles: Vec<[DVec3; 3]>) -> Result<Vec<Part>, Fault> {
+    let mut faces = Faces::open(triangles);
+    let margin = DVec3::new(1.0, 1.0, 0.0) * (MARGIN * faces.size);
+    let around = [faces.min - margin, faces.max + margin];
+    within(&mut faces, around)
+}
+
+/// The formula of faces in a box.
+fn within(faces: &mut Faces, [min, max]: [DVec3; 2]) -> Result<Vec<Part>, Fault> {
+    let pieces = partition::formula(faces)?;
+    if !partition::is_bounded_by(&pieces, faces) {
         return Err(Unsound::Crossing.into());
     }
-    let margin = DVec3::splat(MARGIN * faces.size);
-    let around = Shape::block(faces.min - margin, faces.max + margin)?;
+    let around = Shape::block(min, max)?;
     let mut parts = vec![
         Part::Open { union: false },
         Part::Shape {

@@ -29,7 +29,7 @@ pub(in super::super) fn doubled_area(loop_: &[DVec2]) -> f64 {
 }
 
 /// The strict convex hull of points, counter-clockwise, as their indices.
-pub(super) fn hull(points: &[DVec2]) -> Vec<usize> {
+pub(in super::super) fn hull(points: &[DVec2]) -> Vec<usize> {
     let mut order: Vec<usize> = (0..points.len()).collect();
     let at = |i: usize| points.get(i).copied().unwrap_or_default();
     order.sort_by(|&a, &b| {

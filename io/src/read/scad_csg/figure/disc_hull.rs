@@ -4,6 +4,7 @@
 //! their common tangents touch them, so its boundary is straight lines and true arcs.
 
 use super::chain::hull;
+use super::loops::chords;
 use super::{Figure, FigureId, Figures, Outline, Region};
 use glam::{DAffine2, DVec2};
 
@@ -13,50 +14,53 @@ const MAX_DISCS: usize = 200;
 /// Two factors of a map this close, relatively, leave circles round.
 const ROUND: f64 = 1e-5;
 
-/// Why there is no hull.
-#[derive(Clone, Copy, PartialEq, Eq, Debug)]
-pub(in super::super) enum Unhullable {
-    /// Intersections or differences.
-    Cut,
-    /// Circles that were stretched.
-    Ellipse,
-    /// Too many discs.
-    Many,
-}
-
 impl Figures {
-    /// The convex hull of a figure; `None` if it has no area.
-    pub(in super::super) fn hull(
-        &mut self,
-        root: FigureId,
-    ) -> Result<Option<FigureId>, Unhullable> {
-        let regions = self.united_regions(root).ok_or(Unhullable::Cut)?;
-        let mut points = Vec::new();
-        let mut discs: Vec<(DVec2, f64)> = Vec::new();
+    /// The convex hull of a figure, and whether it is exact; arcs are replaced by chords where
+    /// circles are cut or stretched.
+    pub(in super::super) fn hull(&mut self, root: FigureId) -> (Option<FigureId>, bool) {
+        let (mut points, mut discs) = (Vec::new(), Vec::new());
+        let Some(regions) = self.united_regions(root) else {
+            let loops = self.loops(root);
+            discs.extend(loops.all.into_iter().flatten().map(|p| (p, 0.0)));
+            return (self.hull_of_discs(discs), loops.exact);
+        };
+        let mut exact = true;
+        let sagitta = self.sagitta(root);
         for (at, region) in regions {
             match &region.outline {
                 Outline::Corners { at: corners, .. } => {
-                    points.extend(corners.iter().map(|c| at.transform_point2(*c)));
+                    points.extend(corners.iter().map(|c| (at.transform_point2(*c), 0.0)));
                 }
-                Outline::Circle(radius) => {
-                    let (x, y) = (at.matrix2.x_axis, at.matrix2.y_axis);
-                    let scale = x.length();
-                    let is_round = (y.length() - scale).abs() <= ROUND * scale
-                        && x.dot(y).abs() <= ROUND * scale * scale;
-                    if !is_round {
-                        return Err(Unhullable::Ellipse);
+                Outline::Circle(radius) => match similarity(&at) {
+                    Some(scale) => discs.push((at.translation, scale * radius)),
+                    None => {
+                        exact = false;
+                        let loops = region.loops(&at, sagitta).all;
+                        points.extend(loops.into_iter().flatten().map(|p| (p, 0.0)));
                     }
-                    discs.push((at.translation, scale * radius));
-                }
+                },
             }
         }
+        let corners: Vec<DVec2> = points.iter().map(|p| p.0).collect();
+        if !discs.is_empty() && discs.len() + hull(&corners).len() > MAX_DISCS {
+            exact = false;
+            for (center, radius) in std::mem::take(&mut discs) {
+                let around = chords(center, radius, sagitta.max(1e-6 * radius));
+                points.extend(around.into_iter().map(|p| (p, 0.0)));
+            }
+        }
+        points.extend(discs);
+        (self.hull_of_discs(points), exact)
+    }
+
+    /// The convex hull of discs and points; `None` if it has no area.
+    pub(in super::super) fn hull_of_discs(&mut self, given: Vec<(DVec2, f64)>) -> Option<FigureId> {
+        let (mut discs, points): (Vec<_>, Vec<_>) = given.into_iter().partition(|d| d.1 > 0.0);
+        let points: Vec<DVec2> = points.into_iter().map(|d| d.0).collect();
         let corners = hull(&points);
         let corners = corners.iter().filter_map(|i| points.get(*i).copied());
         discs.extend(corners.map(|p| (p, 0.0)));
         let round = drop_covered(&mut discs);
-        if discs.len() > MAX_DISCS && round > 0 {
-            return Err(Unhullable::Many);
-        }
         let touching: Vec<DVec2> = if round == 0 {
             discs.iter().map(|d| d.0).collect()
         } else {
@@ -64,7 +68,7 @@ impl Figures {
         };
         let mut all = Vec::new();
         let polygon = if touching.len() > 2 {
-            Region::polygon(&[ordered(&touching)])
+            Region::polygon(&[super::convex_corners(&touching)])
         } else {
             None
         };
@@ -73,14 +77,17 @@ impl Figures {
             let disc = self.add(Figure::Region(Region::disc(radius)));
             all.push(self.add(Figure::Moved(DAffine2::from_translation(center), disc)));
         }
-        Ok((!all.is_empty()).then(|| self.union(all)))
+        (!all.is_empty()).then(|| self.union(all))
     }
 }
 
-/// The hull of points as a closed path.
-fn ordered(points: &[DVec2]) -> Vec<DVec2> {
-    let corners = hull(points).into_iter();
-    corners.filter_map(|i| points.get(i).copied()).collect()
+/// The factor of a map that leaves circles round.
+pub(super) fn similarity(at: &DAffine2) -> Option<f64> {
+    let (x, y) = (at.matrix2.x_axis, at.matrix2.y_axis);
+    let scale = x.length();
+    let is_round =
+        (y.length() - scale).abs() <= ROUND * scale && x.dot(y).abs() <= ROUND * scale * scale;
+    is_round.then_some(scale)
 }
 
 /// Removes discs that lie in others; the number of true discs left.

@@ -33,6 +33,7 @@ impl Region {
         let known = Known::new(&given);
         let mut parts = vec![Part::Open { union: true }];
         let mut corners = Vec::new();
+        let mut loops: Vec<Vec<DVec2>> = Vec::new();
         let mut convex = shapes.len() == 1;
         for shape in &shapes {
             // A contour that touches itself is several loops; filled ones turn counter-clockwise.
@@ -73,13 +74,18 @@ impl Region {
             for island in &islands {
                 formula(island, &mut parts);
             }
-            corners.extend(filled.into_iter().chain(islands).flatten());
+            corners.extend(filled.iter().chain(&islands).flatten().copied());
+            for hole in &mut holes {
+                hole.reverse();
+            }
+            loops.extend(filled.into_iter().chain(islands).chain(holes));
         }
         parts.push(Part::Close);
         (!corners.is_empty()).then_some(Self {
             parts,
             outline: Outline::Corners {
                 at: corners,
+                loops,
                 convex,
             },
         })
@@ -87,13 +93,13 @@ impl Region {
 }
 
 /// The vertices that were given, by x.
-struct Known {
+pub(super) struct Known {
     sorted: Vec<DVec2>,
     near: f64,
 }
 
 impl Known {
-    fn new(points: &[DVec2]) -> Self {
+    pub(super) fn new(points: &[DVec2]) -> Self {
         let mut sorted = points.to_vec();
         sorted.sort_by(|a, b| a.x.total_cmp(&b.x));
         let size = points
@@ -106,7 +112,7 @@ impl Known {
     }
 
     /// The given vertex that a resolved one stands for, or itself.
-    fn nearest(&self, point: DVec2) -> DVec2 {
+    pub(super) fn nearest(&self, point: DVec2) -> DVec2 {
         let from = self.sorted.partition_point(|p| p.x < point.x - self.near);
         let close = self.sorted.iter().skip(from);
         let close = close.take_while(|p| p.x <= point.x + self.near);

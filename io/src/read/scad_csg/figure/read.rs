@@ -3,7 +3,7 @@
 use super::super::arguments::Arguments;
 use super::super::complaints::{Complaints, Reported};
 use super::super::shapes::radius;
-use super::Region;
+use super::{Offset, Region};
 use glam::DVec2;
 use std::f64::consts::TAU;
 
@@ -203,6 +203,76 @@ fn check_count(
     ))
 }
 
+/// A turn along the way.
+#[derive(Clone, Copy, PartialEq, Debug)]
+pub(in super::super) struct Twist {
+    /// By how much the last section is turned, clockwise from above, in degrees.
+    pub(super) degrees: f64,
+    /// Layers of plane facets that stand for it.
+    pub(super) slices: u32,
+}
+
+/// Layers of one extrusion, at most.
+const MAX_SLICES: f64 = 2000.0;
+
+/// Reads `twist` and `slices`.
+fn twist(
+    arguments: &Arguments<'_>,
+    complaints: &mut Complaints<'_>,
+) -> Result<Option<Twist>, Reported> {
+    let degrees = arguments
+        .number("twist", complaints)?
+        .map_or(0.0, |t| t.value);
+    if degrees == 0.0 {
+        return Ok(None);
+    }
+    let given = arguments.number("slices", complaints)?.map(|s| s.value);
+    let sides = arguments.fragments();
+    // 30 layers a turn are OpenSCAD's at $fa = 12.
+    let sides = if sides > 0.0 { sides } else { 30.0 };
+    let slices = given
+        .unwrap_or(sides * degrees.abs() / 360.0)
+        .ceil()
+        .max(1.0);
+    if !(degrees.is_finite() && slices <= MAX_SLICES) {
+        return Err(complaints.error(
+            arguments.name,
+            format!("a twist of {degrees}° in {slices} slices is too much"),
+            format!("use at most {MAX_SLICES} slices"),
+        ));
+    }
+    #[expect(
+        clippy::cast_possible_truncation,
+        clippy::cast_sign_loss,
+        reason = "between 1 and the most slices"
+    )]
+    let slices = slices as u32;
+    Ok(Some(Twist { degrees, slices }))
+}
+
+/// Reads `offset(r)` or `offset(delta, chamfer)`; `None` if nothing is to be moved.
+pub(in super::super) fn offset(
+    arguments: &Arguments<'_>,
+    complaints: &mut Complaints<'_>,
+) -> Result<Option<Offset>, Reported> {
+    let chamfer = arguments.flag("chamfer", complaints)?;
+    let delta = arguments.number("delta", complaints)?;
+    let r = arguments.number("r", complaints)?;
+    let given = delta.or(r);
+    if let Some(given) = given.filter(|g| !(g.value.abs() <= MAX_SIZE)) {
+        let message = format!("an outline cannot be moved by {}", given.value);
+        return Err(complaints.error(given.at, message, None));
+    }
+    Ok(match (delta, r) {
+        (Some(delta), _) => Some(Offset::Straight {
+            delta: delta.value,
+            chamfer,
+        }),
+        (None, Some(r)) => Some(Offset::Round(r.value)),
+        (None, None) => None,
+    })
+}
+
 /// What makes a solid of a figure.
 #[derive(Clone, Copy, PartialEq, Debug)]
 pub(in super::super) enum Extrusion {
@@ -214,6 +284,8 @@ pub(in super::super) enum Extrusion {
         scale: DVec2,
         /// How far a point moves in x and y for each step in z.
         lean: DVec2,
+        /// Turned by layers, if at all.
+        twist: Option<Twist>,
     },
     /// About the z axis, y becoming z.
     Revolved {
@@ -266,17 +338,7 @@ fn linear(
         let scale = arguments.numbers("scale", 2, 3, complaints)?;
         scale.map_or(DVec2::ONE, |s| DVec2::from_slice(&s.value))
     };
-    let twist = arguments
-        .number("twist", complaints)?
-        .map_or(0.0, |t| t.value);
-    if twist != 0.0 {
-        return Err(complaints.error(
-            arguments.name,
-            format!("`linear_extrude` with a twist of {twist}° is not supported"),
-            "a twisted surface is no polynomial; approximate it by a union of thin slices"
-                .to_owned(),
-        ));
-    }
+    let twist = twist(arguments, complaints)?;
     if !(along.is_finite() && along.z > 0.0 && scale.is_finite()) {
         let message = format!(
             "an extrusion of height {} and scale [{}, {}] has no volume; it is left out, as in OpenSCAD",
@@ -307,6 +369,7 @@ fn linear(
         z1: z0 + along.z,
         scale,
         lean: along.truncate() / along.z,
+        twist,
     })
 }
 

@@ -12,6 +12,8 @@ use std::cell::RefCell;
 pub(in super::super) enum Refusal {
     /// A rotated figure has points on both sides of the axis.
     AcrossTheAxis,
+    /// A twisted figure crosses itself between two slices.
+    Twisted,
     /// Numbers are beyond floating point.
     Numbers(Error),
 }
@@ -57,8 +59,12 @@ pub(in super::super) fn extrude(
             z1,
             scale,
             lean,
+            twist,
         } => {
-            let upright = if scale == DVec2::ONE {
+            let upright = if let Some(twist) = twist {
+                let loops = figures.loops(figure);
+                super::twist::layers(&loops, [z0, z1], scale, &twist, builder)?
+            } else if scale == DVec2::ONE {
                 let sweep = Sweep::Straight { z0, z1 };
                 lower(figures, figure, DAffine2::IDENTITY, &sweep, builder)?
             } else {
@@ -226,6 +232,7 @@ impl Sweep {
             Outline::Corners {
                 at: corners,
                 convex,
+                ..
             } => {
                 let mut all = Vec::new();
                 if *convex && corners.len() <= MOST_BOUNDING_SIDES {

@@ -13,7 +13,7 @@ const PARALLEL: f64 = 0.999_999;
 
 /// Why faces are not those of a polyhedron.
 #[derive(Clone, PartialEq, Debug)]
-pub(super) enum Unsound {
+pub(in super::super) enum Unsound {
     /// An edge, given by its ends, does not join two faces that turn the same way.
     Edge(DVec3, DVec3),
     /// The faces enclose no volume.
@@ -97,6 +97,27 @@ impl Faces {
             faces.add(&polygon, &mut buckets)?;
         }
         Ok(faces)
+    }
+
+    /// Takes triangles, counter-clockwise from outside, that need not close.
+    pub(super) fn open(triangles: Vec<[DVec3; 3]>) -> Self {
+        let all = || triangles.iter().flatten();
+        let min = all().fold(DVec3::INFINITY, |m, p| m.min(*p));
+        let max = all().fold(DVec3::NEG_INFINITY, |m, p| m.max(*p));
+        let mut faces = Self {
+            triangles: Vec::new(),
+            planes: Vec::new(),
+            size: min.distance(max),
+            min,
+            max,
+        };
+        let mut buckets = BTreeMap::new();
+        for triangle in triangles {
+            if let Some(plane) = plane_of(&triangle) {
+                faces.push(triangle, plane, &mut buckets);
+            }
+        }
+        faces
     }
 
     fn add(

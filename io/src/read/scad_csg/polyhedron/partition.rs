@@ -4,6 +4,11 @@
 //! there is the outside, and the solid is the plane's half-space and what is found behind;
 //! where nothing lies behind, there is the inside. Faces are split only to tell what lies where:
 //! the formula's planes are the faces' own.
+//!
+//! Where many faces are left, an axis-parallel plane through their middle splits them first.
+//! It bounds nothing, since both sides meet in it, but keeps the planes of faces out of parts of
+//! space that they have nothing to do with: a mesh of n faces has a formula of O(n) literals in
+//! which few matter in each place.
 
 use super::faces::{Faces, Plane, Triangle, Unsound};
 use glam::DVec3;
@@ -28,11 +33,16 @@ const MOST_PIECES: usize = 200;
 /// Planes that are tried for each cell.
 const CANDIDATES: usize = 12;
 
+/// Cells with more faces are split by axis-parallel planes.
+const CROWD: usize = 40;
+
 /// Distance from a plane within which points count as lying in it, in sizes of the polyhedron.
 const NEAR: f64 = 4e-6;
 
 /// The formula of a polyhedron.
-pub(super) fn formula(faces: &Faces) -> Result<Vec<Piece>, Unsound> {
+///
+/// Planes that split space only are added to those of the faces.
+pub(super) fn formula(faces: &mut Faces) -> Result<Vec<Piece>, Unsound> {
     enum Task {
         Cell(Vec<Triangle>),
         Part(Piece),
@@ -50,7 +60,17 @@ pub(super) fn formula(faces: &Faces) -> Result<Vec<Piece>, Unsound> {
             Task::Cell(triangles) => triangles,
         };
         left = left.checked_sub(triangles.len()).ok_or(Unsound::Large)?;
-        let Some(best) = choose(&triangles, &faces.planes, near) else {
+        let across = (triangles.len() > CROWD)
+            .then(|| across_the_middle(&triangles, near))
+            .flatten();
+        let best = match across {
+            Some(plane) => {
+                faces.planes.push(plane);
+                Some(faces.planes.len() - 1)
+            }
+            None => choose(&triangles, &faces.planes, near),
+        };
+        let Some(best) = best else {
             continue;
         };
         let Some(plane) = faces.planes.get(best) else {
@@ -104,6 +124,39 @@ pub(super) fn formula(faces: &Faces) -> Result<Vec<Piece>, Unsound> {
         }
     }
     Ok(pieces)
+}
+
+/// An axis-parallel plane with about half of the faces on each side; `None` if none has fewer
+/// than most of them on both.
+fn across_the_middle(triangles: &[Triangle], near: f64) -> Option<Plane> {
+    let low = |t: &Triangle| t.corners.iter().copied().fold(DVec3::INFINITY, DVec3::min);
+    let high = |t: &Triangle| {
+        t.corners
+            .iter()
+            .copied()
+            .fold(DVec3::NEG_INFINITY, DVec3::max)
+    };
+    let mut best: Option<(usize, Plane)> = None;
+    for (axis, normal) in [DVec3::X, DVec3::Y, DVec3::Z].into_iter().enumerate() {
+        let mut middles: Vec<f64> = triangles
+            .iter()
+            .map(|t| 0.5 * (low(t)[axis] + high(t)[axis]))
+            .collect();
+        let half = middles.len() / 2;
+        let (_, middle, _) = middles.select_nth_unstable_by(half, f64::total_cmp);
+        // Beside the vertices, of which many may lie in a plane.
+        let offset = *middle + 7.3 * near;
+        let reaches = |t: &&Triangle| high(t)[axis] > offset + near;
+        let starts = |t: &&Triangle| low(t)[axis] < offset - near;
+        let above = triangles.iter().filter(reaches).count();
+        let below = triangles.iter().filter(starts).count();
+        let larger = above.max(below);
+        if above.min(below) > 0 && best.is_none_or(|(least, _)| larger < least) {
+            best = Some((larger, Plane { normal, offset }));
+        }
+    }
+    let (larger, plane) = best?;
+    (larger * 5 < triangles.len() * 4).then_some(plane)
 }
 
 /// The plane that splits few faces, and best one with all faces on one side.

@@ -39,14 +39,13 @@ fn unknown_and_unsupported_nodes_are_named() {
 
 #[test]
 fn several_errors_are_told_at_once() {
-    let text =
-        "union() {\n\tcube(size = \"a\");\n\tcubee();\n\tminkowski();\n\tsphere(r = [1]);\n}";
+    let text = "union() {\n\tcube(size = \"a\");\n\tcubee();\n\troof();\n\tsphere(r = [1]);\n}";
     assert_eq!(
         errors(text),
         [
             "t.csg:2:14: `size` must be a list of 3 numbers, found `\"a\"`",
             "t.csg:3:2: unknown node `cubee` (did you mean `cube`?)",
-            "t.csg:4:2: `minkowski` is not supported (write the part as unions, intersections and differences of shapes)",
+            "t.csg:4:2: `roof` is not supported (write the part as unions, intersections and differences of shapes)",
             "t.csg:5:13: `r` must be a number, found `[1]`",
         ]
     );
