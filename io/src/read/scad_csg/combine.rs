@@ -100,7 +100,14 @@ impl Evaluator<'_, '_> {
         };
         let is_alone = solids.len() == 1;
         Operand::Solid(match &frame.operation {
-            Operation::Union | Operation::Intersection | Operation::Difference if is_alone => first,
+            Operation::Union
+            | Operation::Intersection
+            | Operation::Difference
+            | Operation::Minkowski
+                if is_alone =>
+            {
+                first
+            }
             Operation::Intersection => self.builder.add(Node::Intersection(solids)),
             Operation::Difference => self.builder.add(Node::Difference(solids)),
             Operation::Union | Operation::Extrude(_) | Operation::Offset(_) | Operation::Fill => {
@@ -115,7 +122,6 @@ impl Evaluator<'_, '_> {
                 self.builder.add(Node::Painted(*material, all))
             }
             Operation::Hull => return self.hull(frame, &solids),
-            Operation::Minkowski if is_alone => first,
             Operation::Minkowski => return self.solid_sum(frame, &solids),
             Operation::Resize(resize) => {
                 let all = self.union(solids);

@@ -46,7 +46,7 @@ impl Facets {
             ..Self::default()
         };
         let numbers = brep.number_vertices();
-        facets.positions = brep.vertices().map(|v| v.position()).collect();
+        facets.positions = brep.vertices().map(brep::VertexView::position).collect();
         for facet in brep.facets() {
             let corner =
                 |v: brep::VertexView<'_>| numbers.get(v.key()).map_or(usize::MAX, |n| *n as usize);

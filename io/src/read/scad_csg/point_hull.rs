@@ -136,18 +136,16 @@ pub(super) fn used(points: &[DVec3], faces: &mut [Vec<usize>]) -> Vec<DVec3> {
 
 /// Only the corners of the hull; all points if it has no volume.
 pub(super) fn reduced(points: &[DVec3]) -> Vec<DVec3> {
-    match triangles(points, 0.0) {
-        Some(mut faces) => used(points, &mut faces),
-        None => {
-            let mut all = points.to_vec();
-            all.sort_by(|a, b| {
-                let order = a.x.total_cmp(&b.x).then(a.y.total_cmp(&b.y));
-                order.then(a.z.total_cmp(&b.z))
-            });
-            all.dedup();
-            all
-        }
+    if let Some(mut faces) = triangles(points, 0.0) {
+        return used(points, &mut faces);
     }
+    let mut all = points.to_vec();
+    all.sort_by(|a, b| {
+        let order = a.x.total_cmp(&b.x).then(a.y.total_cmp(&b.y));
+        order.then(a.z.total_cmp(&b.z))
+    });
+    all.dedup();
+    all
 }
 
 /// Longest side of the box around points.

@@ -31,14 +31,15 @@ impl Figures {
                 Outline::Corners { at: corners, .. } => {
                     points.extend(corners.iter().map(|c| (at.transform_point2(*c), 0.0)));
                 }
-                Outline::Circle(radius) => match similarity(&at) {
-                    Some(scale) => discs.push((at.translation, scale * radius)),
-                    None => {
+                Outline::Circle(radius) => {
+                    if let Some(scale) = similarity(&at) {
+                        discs.push((at.translation, scale * radius));
+                    } else {
                         exact = false;
                         let loops = region.loops(&at, sagitta).all;
                         points.extend(loops.into_iter().flatten().map(|p| (p, 0.0)));
                     }
-                },
+                }
             }
         }
         let corners: Vec<DVec2> = points.iter().map(|p| p.0).collect();

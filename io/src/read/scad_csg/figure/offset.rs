@@ -32,10 +32,9 @@ impl Figures {
     /// The offset of a figure.
     pub(in super::super) fn offset(&mut self, root: FigureId, by: Offset) -> Found {
         match by {
-            Offset::Round(0.0) => (Some(root), true),
+            Offset::Round(0.0) | Offset::Straight { delta: 0.0, .. } => (Some(root), true),
             Offset::Round(r) if r > 0.0 => self.grown(root, r),
             Offset::Round(r) => self.shrunk(root, -r),
-            Offset::Straight { delta: 0.0, .. } => (Some(root), true),
             Offset::Straight { delta, chamfer } => {
                 let loops = self.loops(root);
                 let moved = straight(&loops, delta, chamfer);
@@ -56,14 +55,13 @@ impl Figures {
         let sagitta = self.sagitta(root);
         let (mut all, mut exact) = (Vec::new(), true);
         for (at, region) in regions {
-            let found = match (&region.outline, similarity(&at)) {
-                (Outline::Circle(radius), Some(scale)) => {
-                    (Some(self.disc(at.translation, radius * scale + r)), true)
-                }
-                _ => {
-                    let loops = region.loops(&at, sagitta);
-                    self.grown_loops(&loops, r)
-                }
+            let found = if let (Outline::Circle(radius), Some(scale)) =
+                (&region.outline, similarity(&at))
+            {
+                (Some(self.disc(at.translation, radius * scale + r)), true)
+            } else {
+                let loops = region.loops(&at, sagitta);
+                self.grown_loops(&loops, r)
             };
             all.extend(found.0);
             exact &= found.1;

@@ -259,7 +259,7 @@ pub(in super::super) fn offset(
     let delta = arguments.number("delta", complaints)?;
     let r = arguments.number("r", complaints)?;
     let given = delta.or(r);
-    if let Some(given) = given.filter(|g| !(g.value.abs() <= MAX_SIZE)) {
+    if let Some(given) = given.filter(|g| g.value.is_nan() || g.value.abs() > MAX_SIZE) {
         let message = format!("an outline cannot be moved by {}", given.value);
         return Err(complaints.error(given.at, message, None));
     }
