@@ -163,3 +163,24 @@ fn pivots_exchange_one_vertex() {
         }
     }
 }
+
+/// Thesis 6.3.3: at the points of the control net the coefficients of x² err by 1/(n−1) of what
+/// the affine interpolant errs there, on the other side.
+#[test]
+fn control_net_errs_by_a_fraction_of_the_interpolant() {
+    for n in 2usize..9 {
+        let mut power = vec![0.0; csg::Polynomial::coefficient_count(n)];
+        power[csg::Polynomial::index(n, 2, 0, 0)] = 1.0;
+        let primitive = csg::Primitive {
+            polynomial: csg::Polynomial::new(n, power).unwrap(),
+            coefficient_error: 0.0,
+        };
+        let root = &bernstein_coefficients(&primitive)[0];
+        for l in 1..n {
+            let x = l as f64 / n as f64;
+            let net = root[crate::bernstein::index(0, 0, l)] - x * x;
+            let interpolant = x - x * x;
+            assert!((net + interpolant / (n as f64 - 1.0)).abs() < 1e-14);
+        }
+    }
+}
