@@ -44,6 +44,7 @@ mod tessellate;
 mod topology;
 mod triangulate;
 mod validate;
+mod weld;
 
 pub mod defects;
 pub mod simplify;
@@ -67,3 +68,4 @@ pub use topology::{
 };
 pub use triangulate::{Retriangulated, retriangulate};
 pub use validate::{Defect, Defects, Valid};
+pub use weld::weld;
