@@ -57,6 +57,7 @@ mod polygon;
 mod predicates;
 mod prove;
 mod rounding;
+pub mod sectors;
 mod settings;
 mod sheets;
 mod simplex;
