@@ -8,17 +8,23 @@ use std::path::Path;
 pub enum Format {
     /// OpenSCAD's flat dump, see [`scad_csg`](super::scad_csg).
     ScadCsg,
+    /// The thesis' Boolean tree of instances, see [`thesis::solid`](crate::thesis::solid).
+    ThesisCsg,
+    /// The thesis' triangles, see [`thesis::approximation`](crate::thesis::approximation).
+    ThesisApl,
 }
 
 impl Format {
     /// All of them.
-    pub const ALL: [Self; 1] = [Self::ScadCsg];
+    pub const ALL: [Self; 3] = [Self::ScadCsg, Self::ThesisCsg, Self::ThesisApl];
 
     /// The name by which users ask for it.
     #[must_use]
     pub fn name(self) -> &'static str {
         match self {
             Self::ScadCsg => "csg",
+            Self::ThesisCsg => "thesis-csg",
+            Self::ThesisApl => "apl",
         }
     }
 
@@ -27,6 +33,8 @@ impl Format {
     pub fn description(self) -> &'static str {
         match self {
             Self::ScadCsg => "flat CSG dump of OpenSCAD",
+            Self::ThesisCsg => "the thesis' binary Boolean tree, .CSG",
+            Self::ThesisApl => "the thesis' linear approximation of a boundary",
         }
     }
 }
@@ -45,12 +53,14 @@ pub enum UnreadableFormat {
     },
     /// Nothing known.
     #[error(
-        "unknown file format (known: csg, the flat dump of OpenSCAD; choose one with --from csg)"
+        "unknown file format (known: csg, the flat dump of OpenSCAD; thesis-csg and apl, binary files of \
+         the thesis; choose one with --from csg)"
     )]
     Unknown,
 }
 
 const MESH: &str = "a mesh has lost its set operations: start from the CSG model it was made of";
+const SUBSIMPL: &str = "subdivide it with csg2brep thesis subsimpl";
 const LATER: &str = "reading it is not supported yet";
 const UNPACK: &str = "unpack it first";
 
@@ -96,6 +106,19 @@ pub fn sniff(bytes: &[u8], name: &str) -> Result<Format, UnreadableFormat> {
     }
     if extension == "obj" {
         return foreign("an OBJ mesh", MESH);
+    }
+    match extension {
+        "apl" => return Ok(Format::ThesisApl),
+        "cspg" => return foreign("a solid in Bézier form", SUBSIMPL),
+        "wfr" => return foreign("a mesh of LCGRENDERER", MESH),
+        _ => {}
+    }
+    // The Boolean of its first node; no text begins so.
+    if let [0 | 1, ..] = bytes {
+        return Ok(Format::ThesisCsg);
+    }
+    if bytes.len() % 76 == 1 && bytes.starts_with(b"A") && bytes.contains(&0) {
+        return Ok(Format::ThesisApl);
     }
     if looks_like_calls(start) || matches!(extension, "csg" | "scad") {
         return Ok(Format::ScadCsg);
@@ -144,6 +167,19 @@ mod tests {
             sniff(b"hello world", "a.txt"),
             Err(UnreadableFormat::Unknown)
         );
+    }
+
+    #[test]
+    fn the_thesis_binary_trees_share_an_extension_with_text() {
+        assert_eq!(
+            sniff(b"\x01\0\0\0\0\0\0\0\x01", "a.CSG"),
+            Ok(Format::ThesisCsg)
+        );
+        assert_eq!(sniff(b"\0\x02\x01", "-"), Ok(Format::ThesisCsg));
+        assert_eq!(sniff(b"cube(1);", "a.CSG"), Ok(Format::ScadCsg));
+        let one_face = [b"A".as_slice(), &[0; 76]].concat();
+        assert_eq!(sniff(&one_face, "-"), Ok(Format::ThesisApl));
+        assert_eq!(sniff(b"A", "a.apl"), Ok(Format::ThesisApl));
     }
 
     #[test]
