@@ -194,6 +194,10 @@ pub(crate) struct ModelArgs {
         help_heading = "Model"
     )]
     pub(crate) facet_limit: u32,
+    /// The bytes that stand for union, intersection and difference in the thesis' files, as in
+    /// 0,1,2
+    #[arg(long, value_name = "U,I,D", hide_short_help = true, help_heading = "Model", value_parser = crate::thesis::pipe::operators)]
+    pub(crate) operators: Option<io::thesis::tree::Operators>,
     /// Highest degree of a polynomial
     #[arg(
         long,
@@ -318,6 +322,10 @@ pub(crate) enum MeshKind {
 pub(crate) enum InputFormat {
     /// Flat CSG dump of OpenSCAD, with exact shapes added
     Csg,
+    /// Binary Boolean tree of the thesis, .CSG
+    ThesisCsg,
+    /// Triangles of the thesis, stitched again
+    Apl,
 }
 
 /// Formats that can be written.
@@ -334,6 +342,12 @@ pub(crate) enum OutputFormat {
     Threemf,
     /// Binary PLY
     Ply,
+    /// Binary Boolean tree of the thesis, .CSG: the solid itself, not its mesh
+    ThesisCsg,
+    /// Triangles of the thesis
+    Apl,
+    /// Mesh of the thesis' renderer
+    Wfr,
 }
 
 /// Units of length.

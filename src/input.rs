@@ -4,6 +4,8 @@ use crate::args::InputFormat;
 use crate::failure::Failure;
 use io::read::format::{Format, sniff};
 use io::read::{Diagnostic, ReadOptions, Reading, decode, scad_csg};
+use io::thesis::solid::{self, MatrixForm};
+use io::thesis::tree::Operators;
 use std::io::Read as _;
 use std::path::{Path, PathBuf};
 
@@ -43,17 +45,15 @@ impl Input {
         }
     }
 
-    /// Reads the model.
-    pub(crate) fn load(
-        &self,
-        format: Option<InputFormat>,
-        options: ReadOptions,
-    ) -> Result<Loaded, Failure> {
+    /// Reads the file and tells its format.
+    pub(crate) fn open(&self, format: Option<InputFormat>) -> Result<(Vec<u8>, Format), Failure> {
         let name = self.name();
         let bytes = self.bytes()?;
         // Wide text would pass for a binary file of unknown format; reading it tells better.
         let format = match format {
             Some(InputFormat::Csg) => Format::ScadCsg,
+            Some(InputFormat::ThesisCsg) => Format::ThesisCsg,
+            Some(InputFormat::Apl) => Format::ThesisApl,
             None => match sniff(&bytes, &name) {
                 Ok(format) => format,
                 Err(unreadable) => {
@@ -62,12 +62,50 @@ impl Input {
                 }
             },
         };
-        let source = decode::decode(bytes, &name).map_err(from_decoding)?;
-        let reading = match format {
-            Format::ScadCsg => scad_csg::read(&source, &name, &options),
+        Ok((bytes, format))
+    }
+
+    /// Reads the model.
+    pub(crate) fn load(
+        &self,
+        format: Option<InputFormat>,
+        options: ReadOptions,
+    ) -> Result<Loaded, Failure> {
+        let (bytes, format) = self.open(format)?;
+        self.parse(bytes, format, options, Operators::default())
+    }
+
+    /// The model in a file's content.
+    pub(crate) fn parse(
+        &self,
+        bytes: Vec<u8>,
+        format: Format,
+        options: ReadOptions,
+        operators: Operators,
+    ) -> Result<Loaded, Failure> {
+        let name = self.name();
+        match format {
+            Format::ScadCsg => {}
+            Format::ThesisCsg => {
+                let form = MatrixForm::Rows;
+                let wrong = |error| Failure::BadInput(format!("{name}: {error}"));
+                let tree = solid::read(&bytes, operators, form).map_err(wrong)?;
+                return Ok(Loaded {
+                    model: solid::to_model(&tree.value, form)?,
+                    format,
+                    source: String::new(),
+                    warnings: Vec::new(),
+                });
+            }
+            Format::ThesisApl => {
+                let text = "a linear approximation is a boundary already, not a CSG model (convert \
+                            it, as in csg2brep IN -o part.glb)";
+                return Err(Failure::BadInput(format!("{name}: {text}")));
+            }
             _ => return Err(Failure::Bug(format!("no reader for {}", format.name()))),
-        };
-        match reading {
+        }
+        let source = decode::decode(bytes, &name).map_err(from_decoding)?;
+        match scad_csg::read(&source, &name, &options) {
             Ok(Reading { model, warnings }) => Ok(Loaded {
                 model,
                 format,
@@ -81,7 +119,8 @@ impl Input {
         }
     }
 
-    fn bytes(&self) -> Result<Vec<u8>, Failure> {
+    /// The whole content.
+    pub(crate) fn bytes(&self) -> Result<Vec<u8>, Failure> {
         let failed = |cause| Failure::File {
             action: "read",
             path: self.name().into(),

@@ -9,6 +9,7 @@ mod excerpt;
 mod failure;
 mod info;
 mod input;
+mod loose;
 mod memory;
 mod output;
 mod pipeline;

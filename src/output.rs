@@ -4,8 +4,13 @@ use crate::args::OutputFormat;
 use crate::failure::Failure;
 use crate::pipeline::Boundary;
 use crate::run::{Output, Target};
-use brep::Shading;
+use brep::{Brep, Shading};
 use csg::Material;
+use io::thesis::ByteOrder;
+use io::thesis::approximation::{self, Face};
+use io::thesis::solid;
+use io::thesis::tree::Operators;
+use io::thesis::wireframe::{self, Wireframe};
 use io::write::{Error, Unit, atomic, gltf, obj, ply, stl, threemf};
 use std::io::{BufWriter, Write};
 use std::path::Path;
@@ -16,7 +21,13 @@ pub(crate) fn write(
     output: &Output,
     boundary: &Boundary,
     unit: Option<Unit>,
+    operators: Operators,
 ) -> Result<Option<String>, Failure> {
+    if output.format == OutputFormat::ThesisCsg && boundary.is_mesh {
+        let text =
+            "the input is a mesh, which has lost its set operations: only a mesh can be written";
+        return Err(Failure::BadInput(text.to_owned()));
+    }
     let library = match (output.format, &output.target) {
         (OutputFormat::Obj, Target::File(path)) if is_painted(&boundary.solid.materials) => {
             Some(path.with_extension("mtl"))
@@ -27,11 +38,11 @@ pub(crate) fn write(
     let reference = library.as_deref().and_then(Path::file_name);
     let reference = reference.map(|name| name.to_string_lossy().into_owned());
     to_target(&output.target, |out| {
-        remark = mesh(output.format, boundary, unit, reference, out)?;
+        remark = mesh(output.format, boundary, unit, reference, operators, out)?;
         Ok(())
     })?;
     if let Some(library) = library {
-        let Boundary { brep, solid } = boundary;
+        let Boundary { brep, solid, .. } = boundary;
         let target = Target::File(library);
         to_target(&target, |mut out| {
             obj::write_materials(brep, &solid.materials, &mut out)
@@ -65,9 +76,10 @@ fn mesh(
     boundary: &Boundary,
     unit: Option<Unit>,
     material_library: Option<String>,
+    operators: Operators,
     mut out: &mut dyn Write,
 ) -> Result<Option<String>, Error> {
-    let Boundary { brep, solid } = boundary;
+    let Boundary { brep, solid, .. } = boundary;
     match format {
         OutputFormat::Obj => {
             let options = obj::Options {
@@ -103,8 +115,28 @@ fn mesh(
                 return Ok(Some(text.to_owned()));
             }
         }
+        OutputFormat::ThesisCsg => {
+            let tree = solid::from_solid(&boundary.solid);
+            solid::write(&tree, operators, ByteOrder::Big, &mut out)?;
+        }
+        OutputFormat::Apl => approximation::write(faces(brep), ByteOrder::Big, &mut out)?,
+        OutputFormat::Wfr => {
+            let mesh = Wireframe::from_faces(&faces(brep))?;
+            wireframe::write(&mesh, ByteOrder::Big, &mut out)?;
+        }
     }
     Ok(None)
+}
+
+/// The facets as the thesis writes them; one whose leaf held several surfaces is not told apart.
+fn faces(brep: &Brep) -> Vec<Face> {
+    let facets = brep.facets();
+    facets
+        .map(|facet| Face {
+            material: solid::material_number(facet.material()),
+            corners: facet.vertices().map(|v| v.position().to_array()),
+        })
+        .collect()
 }
 
 /// Whether any part has a colour.

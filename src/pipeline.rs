@@ -3,6 +3,7 @@
 use crate::args::{InputFormat, MeshKind};
 use crate::failure::Failure;
 use crate::input::Loaded;
+use crate::loose;
 use crate::progress::{self, Progress};
 use crate::report::Report;
 use crate::run::Job;
@@ -10,12 +11,15 @@ use crate::talk::Talk;
 use brep::simplify::remove_degenerate;
 use brep::{Brep, Groups, Properties, Quality, Retriangulated, Shells, Valid};
 use csg::{PrimitiveId, Solid};
+use io::read::format::Format;
 use subdiv::{Fragments, Rule};
 
 /// A solid's boundary, ready to be written.
 pub(crate) struct Boundary {
     pub(crate) brep: Valid<Brep>,
     pub(crate) solid: Solid,
+    /// Whether a mesh was read, so that nothing is known of the solid but its boundary.
+    pub(crate) is_mesh: bool,
 }
 
 /// Runs all stages; `report` learns what each one did, also when a later one fails.
@@ -27,7 +31,24 @@ pub(crate) fn run(
     report: &mut Report,
 ) -> Result<Boundary, Failure> {
     progress.begin("reading");
-    let loaded = report.timed("reading", || job.input.load(from, job.read))?;
+    let (bytes, format) = job.input.open(from)?;
+    if format == Format::ThesisApl {
+        report.input.format = Some(format.name());
+        let (fragments, solid) = report.timed("reading", || loose::read(job, &bytes))?;
+        progress.begin("stitching");
+        let brep = report.timed("stitching", || stitch(&fragments))?;
+        let is_mesh = true;
+        let boundary = Boundary {
+            brep,
+            solid,
+            is_mesh,
+        };
+        return Ok(measured(boundary, progress, report));
+    }
+    let operators = job.operators;
+    let loaded = report.timed("reading", || {
+        job.input.parse(bytes, format, job.read, operators)
+    })?;
     report.input.format = Some(loaded.format.name());
     progress.hidden_while(|| warn(&loaded, talk, report));
 
@@ -38,15 +59,29 @@ pub(crate) fn run(
     report.add_solid(&solid);
 
     let brep = mesh(&solid, job, talk, progress, report)?;
+    let is_mesh = false;
+    Ok(measured(
+        Boundary {
+            brep,
+            solid,
+            is_mesh,
+        },
+        progress,
+        report,
+    ))
+}
 
+/// The boundary with its measures in the report.
+fn measured(boundary: Boundary, progress: &Progress, report: &mut Report) -> Boundary {
     progress.begin("measuring");
+    let brep = &boundary.brep;
     let (groups, shells, properties, quality) = report.timed("measuring", || {
-        let (groups, shells) = (Groups::of(&brep), Shells::of(&brep));
-        (groups, shells, Properties::of(&brep), Quality::of(&brep))
+        let (groups, shells) = (Groups::of(brep), Shells::of(brep));
+        (groups, shells, Properties::of(brep), Quality::of(brep))
     });
-    report.add_boundary(&brep, &groups, &shells, &properties);
+    report.add_boundary(brep, &groups, &shells, &properties);
     report.add_quality(quality.as_ref());
-    Ok(Boundary { brep, solid })
+    boundary
 }
 
 /// The boundary, with the facets that were asked for.

@@ -9,6 +9,7 @@ use crate::values::{Bytes, Tolerance};
 use csg::Aabb;
 use glam::DVec3;
 use io::read::ReadOptions;
+use io::thesis::tree::Operators;
 use io::write::Unit;
 use std::path::{Path, PathBuf};
 
@@ -33,6 +34,8 @@ pub(crate) struct Output {
 pub(crate) struct Job {
     pub(crate) input: Input,
     pub(crate) read: ReadOptions,
+    /// Codes in the thesis' files.
+    pub(crate) operators: Operators,
     pub(crate) clip: Option<Aabb>,
     pub(crate) precision: Precision,
     pub(crate) max_level: Option<u8>,
@@ -97,6 +100,7 @@ impl Job {
                 facet_limit: args.facet_limit,
                 max_degree: args.max_degree,
             },
+            operators: args.operators.unwrap_or_default(),
             clip: args.clip.as_deref().map(clip_box).transpose()?,
             precision: match (args.level, args.tolerance.unwrap_or_default()) {
                 (Some(level), _) => Precision::Level(level),
@@ -256,9 +260,12 @@ fn output(path: PathBuf, to: Option<OutputFormat>) -> Result<Output, Failure> {
                 Some("stl") => OutputFormat::Stl,
                 Some("3mf") => OutputFormat::Threemf,
                 Some("ply") => OutputFormat::Ply,
+                Some("csg") => OutputFormat::ThesisCsg,
+                Some("apl") => OutputFormat::Apl,
+                Some("wfr") => OutputFormat::Wfr,
                 _ => {
                     return Err(Failure::Usage(format!(
-                        "{}: no format has this extension (known: .obj, .glb, .stl, .3mf, .ply; or choose one with --to)",
+                        "{}: no format has this extension (known: .obj, .glb, .stl, .3mf, .ply, .CSG, .apl, .wfr; or choose one with --to)",
                         path.display()
                     )));
                 }

@@ -1,0 +1,76 @@
+//! What the thesis' programs have in common: they read standard input, write standard output, and
+//! agree on codes that the thesis leaves open.
+
+use crate::failure::Failure;
+use crate::input::Input;
+use clap::Args;
+use io::thesis::tree::Operators;
+use io::thesis::{ByteOrder, Decoded, Error};
+use std::path::PathBuf;
+
+/// One file in, one file out.
+#[derive(Args, Debug)]
+pub(super) struct Pipe {
+    /// The file to read; `-` is standard input
+    #[arg(value_name = "IN", default_value = "-")]
+    pub(super) input: PathBuf,
+    /// The file to write; `-` is standard output
+    #[arg(long, value_name = "FILE", default_value = "-")]
+    pub(super) output: PathBuf,
+}
+
+/// Codes of operators in binary files.
+#[derive(Args, Debug)]
+pub(super) struct Codes {
+    /// The bytes that stand for union, intersection and difference, as in 0,1,2
+    #[arg(long, value_name = "U,I,D", value_parser = operators)]
+    operators: Option<Operators>,
+}
+
+impl Codes {
+    pub(super) fn operators(&self) -> Operators {
+        self.operators.unwrap_or_default()
+    }
+}
+
+/// Order of bytes in binary files.
+#[derive(Args, Debug)]
+pub(super) struct Order {
+    /// Write little-endian numbers; reading recognizes them
+    #[arg(long)]
+    little_endian: bool,
+}
+
+impl Order {
+    pub(super) fn bytes(&self) -> ByteOrder {
+        if self.little_endian {
+            ByteOrder::Little
+        } else {
+            ByteOrder::Big
+        }
+    }
+}
+
+/// Three different bytes, separated by commas.
+pub(crate) fn operators(text: &str) -> Result<Operators, String> {
+    let numbers: Result<Vec<u8>, _> = text.split(',').map(str::parse).collect();
+    let codes: Option<[u8; 3]> = numbers.ok().and_then(|list| list.try_into().ok());
+    let wrong = "expected three different numbers from 0 to 255, as in 0,1,2";
+    codes
+        .and_then(Operators::new)
+        .ok_or_else(|| wrong.to_owned())
+}
+
+/// Reads a whole file in one of the thesis' formats; also its name for messages.
+pub(super) fn read_input<T>(
+    path: &std::path::Path,
+    read: impl FnOnce(&[u8]) -> Result<Decoded<T>, Error>,
+) -> Result<(String, Decoded<T>), Failure> {
+    let input = Input::new(path.to_owned());
+    let name = input.name();
+    let bytes = input.bytes()?;
+    match read(&bytes) {
+        Ok(decoded) => Ok((name, decoded)),
+        Err(error) => Err(Failure::BadInput(format!("{name}: {error}"))),
+    }
+}

@@ -1,0 +1,304 @@
+//! `csg2brep thesis …`: byte files that a Python script assembles from the thesis' text, pipelines
+//! of its programs through standard input and output, and solids whose measures are known.
+
+mod support;
+
+use std::f64::consts::PI;
+use std::path::Path;
+use std::process::{Command, Output};
+
+const ROOT: &str = env!("CARGO_MANIFEST_DIR");
+
+/// The folder with the script's files.
+fn files() -> tempfile::TempDir {
+    let folder = tempfile::tempdir().unwrap();
+    let script = Path::new(ROOT).join("tests/python/thesis_files.py");
+    let made = Command::new(support::validators())
+        .arg(script)
+        .arg(folder.path())
+        .status();
+    assert!(made.unwrap().success());
+    folder
+}
+
+/// Runs the program in a folder, with bytes on standard input.
+fn run(folder: &Path, args: &[&str], stdin: &[u8]) -> Output {
+    assert_cmd::cargo::cargo_bin_cmd!("csg2brep")
+        .current_dir(folder)
+        .env("HOME", folder)
+        .args(args)
+        .write_stdin(stdin)
+        .output()
+        .unwrap()
+}
+
+/// The same, for what must succeed: standard output.
+fn out(folder: &Path, args: &[&str], stdin: &[u8]) -> Vec<u8> {
+    let output = run(folder, args, stdin);
+    let said = String::from_utf8_lossy(&output.stderr);
+    assert!(output.status.success(), "{args:?}: {said}");
+    output.stdout
+}
+
+/// Runs programs one after the other, each reading what the last one wrote.
+fn pipeline(folder: &Path, first: &[u8], programs: &[&[&str]]) -> Vec<u8> {
+    programs.iter().fold(first.to_vec(), |bytes, args| {
+        let args: Vec<&str> = ["thesis"].iter().chain(*args).copied().collect();
+        out(folder, &args, &bytes)
+    })
+}
+
+/// The number behind `area: ` or `volume: `.
+fn measure(printed: &[u8], what: &str) -> f64 {
+    let text = std::str::from_utf8(printed).unwrap();
+    let number = text.strip_prefix(what).and_then(|t| t.strip_prefix(": "));
+    number
+        .unwrap_or_else(|| panic!("{text}"))
+        .trim()
+        .parse()
+        .unwrap()
+}
+
+/// Volume of a subdivision, and the bounds that full and front simplices give.
+fn volume(folder: &Path, tree: &[u8]) -> [f64; 3] {
+    let output = run(folder, &["thesis", "propsimpl", "-V", "-v"], tree);
+    let said = String::from_utf8_lossy(&output.stderr).into_owned();
+    let numbers = said.lines().find_map(|line| line.strip_prefix("between "));
+    let (low, high) = numbers.and_then(|n| n.split_once(" and ")).expect("bounds");
+    [
+        low.parse().unwrap(),
+        measure(&output.stdout, "volume"),
+        high.parse().unwrap(),
+    ]
+}
+
+#[test]
+fn files_assembled_by_hand_mean_what_the_thesis_says() {
+    let folder = files();
+    let folder = folder.path();
+    for order in ["", "_little"] {
+        let read = |name: &str, end: &str| {
+            std::fs::read(folder.join(format!("{name}{order}.{end}"))).unwrap()
+        };
+        let area = out(
+            folder,
+            &["thesis", "propsimpl", "-A"],
+            &read("tetrahedron", "apl"),
+        );
+        assert!((measure(&area, "area") - (1.5 + 0.75_f64.sqrt())).abs() < 1e-15);
+        let half = volume(folder, &read("halves", "sub"));
+        assert!((half[1] - 0.125).abs() < 1e-15, "{half:?}");
+        let mesh = out(folder, &["thesis", "vis2lcg"], &read("tetrahedron", "apl"));
+        assert_eq!(mesh, std::fs::read(folder.join("tetrahedron.wfr")).unwrap());
+        // x ≤ ½ cuts a triangle of legs ½ off, and an eighth of the simplex' volume.
+        let sector = read("sector", "cspg");
+        let cut = pipeline(
+            folder,
+            &sector,
+            &[&["subsimpl", "-N", "6"], &["propsimpl", "-A"]],
+        );
+        assert!((measure(&cut, "area") - 0.125).abs() < 1e-12);
+        let tree = pipeline(
+            folder,
+            &sector,
+            &[&["subsimpl", "-O", "SUBDIVISAO", "-N", "6"]],
+        );
+        assert!((volume(folder, &tree)[1] - 1.0 / 48.0).abs() < 1e-12);
+    }
+    let stl = |input: &str| {
+        let clip = ["--box", "-6", "-6", "-3", "70", "6", "9"];
+        let args = [
+            &[input, "-o", "-", "--to", "stl", "--level", "18"],
+            clip.as_slice(),
+        ]
+        .concat();
+        out(folder, &args, b"")
+    };
+    assert_eq!(stl("everything.CSG"), stl("everything_little.CSG"));
+}
+
+/// A ball of radius 2 without a unit block: 32π/3 − 1, and 16π + 6 (thesis programs throughout).
+#[test]
+fn a_pipeline_brackets_volume_and_area() {
+    let folder = files();
+    let folder = folder.path();
+    let solid = std::fs::read(folder.join("bored.CSG")).unwrap();
+    let boxed = ["csg2cspg", "-B", "-2", "-3", "-3", "4", "3", "3"];
+    let cspg = pipeline(folder, &solid, &[&boxed]);
+    let exact = 32.0 / 3.0 * PI - 1.0;
+    let tree = pipeline(folder, &cspg, &[&["subsimpl", "-o", "s", "-n", "15"]]);
+    let [low, estimate, high] = volume(folder, &tree);
+    assert!(low < exact && exact < high, "{low} {exact} {high}");
+    // Interpolants of |p|² are too large by at most a quarter of the longest edge squared, so the
+    // ball's radius is too small by 0.015; the block's planes are exact.
+    assert!(
+        estimate < exact && exact - estimate < 16.0 * PI * 0.02,
+        "{estimate}"
+    );
+    let apl = pipeline(folder, &cspg, &[&["subsimpl", "-n", "15"]]);
+    let area = measure(
+        &pipeline(folder, &apl, &[&["propsimpl", "-V", "-V", "-A"]]),
+        "area",
+    );
+    let exact = 16.0 * PI + 6.0;
+    assert!((area / exact - 1.0).abs() < 0.02, "{area} {exact}");
+
+    // The triangles close again, with the cavity.
+    std::fs::write(folder.join("again.apl"), &apl).unwrap();
+    let report = out(folder, &["again.apl", "--report", "-"], b"");
+    let report: serde_json::Value = serde_json::from_slice(&report).unwrap();
+    assert_eq!(report["counts"]["shells"], 2);
+    assert_eq!(report["counts"]["solids"], 1);
+}
+
+/// With -B from −1 to 1 the unbounded plane z ≥ 0 is half of the box; with -L it has no walls.
+#[test]
+fn the_box_limits_the_solid_unless_l_is_given() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    let mut plane = vec![1, 0, 0, 0, 1, 0, 0, 0, 3];
+    for at in 0..16 {
+        plane.extend(if at % 5 == 0 { 1.0_f32 } else { 0.0 }.to_be_bytes());
+    }
+    let bounds = ["-B", "-1", "-1", "-1", "1", "1", "1"];
+    let area = |limits: &[&str]| {
+        let convert = [&["csg2cspg"], limits, bounds.as_slice()].concat();
+        let programs: [&[&str]; 3] = [&convert, &["subsimpl", "-N", "9"], &["propsimpl", "-A"]];
+        measure(&pipeline(folder, &plane, &programs), "area")
+    };
+    // Two squares of side 2 and four walls of 2 by 1; the square alone.
+    assert!((area(&[]) - 16.0).abs() < 1e-9, "{}", area(&[]));
+    assert!((area(&["-L"]) - 4.0).abs() < 1e-9, "{}", area(&["-L"]));
+}
+
+#[test]
+fn options_mean_what_the_thesis_says() {
+    let folder = files();
+    let folder = folder.path();
+    let sector = std::fs::read(folder.join("bored.CSG")).unwrap();
+    let boxed = ["csg2cspg", "-B", "-2", "-3", "-3", "4", "3", "3"];
+    let cspg = pipeline(folder, &sector, &[&boxed]);
+    let apl = |options: &[&str]| {
+        let args = [&["subsimpl"], options].concat();
+        pipeline(folder, &cspg, &[&args])
+    };
+    // The longest edge is 6√3: ⌈log₂(6√3 / 1)⌉ = 4 halvings are 12 levels, whatever -N says.
+    assert_eq!(apl(&["-T", "1", "-N", "3"]), apl(&["-n", "12"]));
+    assert_eq!(
+        apl(&["-D"]),
+        apl(&["-o", "a", "-p", "0", "-n", "15", "-m", "0"])
+    );
+    assert_eq!(
+        apl(&["-o", "APLIN", "-n", "6"]),
+        apl(&["-O", "A", "-N", "6"])
+    );
+    // Simple regions stay as coarse as level 9, where primitives meet cells are those of level 12.
+    let faces = |bytes: &[u8]| bytes.len() / 76;
+    let [coarse, mixed, fine] =
+        [&["-n", "9"][..], &["-n", "12", "-m", "3"], &["-n", "12"]].map(|o| faces(&apl(o)));
+    assert!(coarse < mixed && mixed < fine, "{coarse} {mixed} {fine}");
+    let refused = run(folder, &["thesis", "subsimpl", "-E", "-T", "1"], &cspg);
+    assert_eq!(refused.status.code(), Some(2));
+
+    let table = |options: &[&str]| String::from_utf8(apl(options)).unwrap();
+    let english = table(&["-E", "-N", "3"]);
+    assert!(english.starts_with("EXECUTION STATISTICS\n\nSubdivision level:          3.\n"));
+    assert!(
+        english.contains("Simplices visited:          6 (100.0%).\n"),
+        "{english}"
+    );
+    let portuguese = table(&["-e", "-n", "3", "--portuguese"]);
+    assert!(
+        portuguese.contains("TOTAIS GERAIS:\nTotal de Simplexos visitados:"),
+        "{portuguese}"
+    );
+}
+
+/// Any solid becomes a `.CSG` that means the same: volumes agree to the format's seven digits.
+#[test]
+fn fixtures_are_saved_and_read_again() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    for name in ["manchete", "atomo", "chupeta"] {
+        let path = format!("{ROOT}/fixtures/thesis/{name}.csg");
+        let file = format!("{name}.CSG");
+        out(folder, &[&path, "-o", &file, "--level", "6"], b"");
+        let volume = |input: &str| {
+            let report = out(folder, &[input, "--level", "18", "--report", "-"], b"");
+            let report: serde_json::Value = serde_json::from_slice(&report).unwrap();
+            report["volume"].as_f64().unwrap()
+        };
+        let (text, binary) = (volume(&path), volume(&file));
+        assert!(
+            (binary / text - 1.0).abs() < 1e-3,
+            "{name}: {text} {binary}"
+        );
+    }
+}
+
+#[test]
+fn pictures_are_drawn_over_each_other() {
+    let folder = files();
+    let folder = folder.path();
+    std::fs::write(folder.join("tabcor.dat"), "0 10 20 30\n1 200 0 0\n").unwrap();
+    std::fs::write(
+        folder.join("sisproj.dat"),
+        "0.3 0.3 0.3\n-1 1.5 -1\n5\n-1 -1 1 1\n",
+    )
+    .unwrap();
+    for mode in [&["--axes"][..], &["--solid"]] {
+        let files = [
+            "thesis",
+            "visual",
+            "tetrahedron.apl",
+            "tetrahedron_little.apl",
+            "--size",
+            "64x48",
+        ];
+        let png = out(folder, &[files.as_slice(), mode].concat(), b"");
+        assert!(png.starts_with(b"\x89PNG"));
+        assert_eq!(png[16..24], [0, 0, 0, 64, 0, 0, 0, 48]);
+    }
+}
+
+/// Each file has one thing wrong; the message names the byte.
+#[test]
+fn bad_files_are_refused_with_the_byte() {
+    let folder = files();
+    let folder = folder.path();
+    let cases = [
+        ("type.CSG", "byte 5: unknown type 42 of primitive"),
+        ("operator.CSG", "byte 1: unknown operator code 9"),
+        ("truncated.CSG", "byte 100: the file ends"),
+        ("trailing.CSG", "byte 73: 3 bytes are left"),
+        ("nan.CSG", "byte 9: an entry of a matrix is NaN"),
+        ("degree.CSG", "byte 9: degree 2147483647"),
+        ("singular.CSG", "byte 9: the transform is singular"),
+        ("tube.CSG", "byte 5: tube radius must be positive"),
+        ("primitives.cspg", "byte 0: 2147483647 primitives cannot be"),
+        ("sectors.cspg", "byte 9: 1073741824 sectors cannot be"),
+        ("name.cspg", "byte 13: primitive 6 of the tree"),
+        ("nan.cspg", "byte 145: a Bézier coefficient is NaN"),
+        ("infinite.apl", "byte 297: a face's corner is inf"),
+        ("short.apl", "byte 297: the file ends"),
+        ("open.apl", "the triangles do not close"),
+        ("node.sub", "byte 101: unknown type 7 of simplex"),
+        ("letter.sub", "byte 0: expected the letter 'S'"),
+    ];
+    for (name, expected) in cases {
+        let file = format!("wrong_{name}");
+        let args: &[&str] = match name.rsplit_once('.').unwrap().1 {
+            "cspg" => &["thesis", "subsimpl", &file, "--output", "never"],
+            "sub" => &["thesis", "propsimpl", "-V", &file],
+            _ => &[&file, "-o", "never.glb"],
+        };
+        let output = run(folder, args, b"");
+        let said = String::from_utf8_lossy(&output.stderr);
+        assert_eq!(output.status.code(), Some(1), "{name}: {said}");
+        assert!(
+            said.contains(&format!("{file}: {expected}")),
+            "{name}: {said}"
+        );
+    }
+    assert!(!folder.join("never").exists() && !folder.join("never.glb").exists());
+}
