@@ -1,6 +1,11 @@
 //! `csg2brep thesis …`: byte files that a Python script assembles from the thesis' text, pipelines
 //! of its programs through standard input and output, and solids whose measures are known.
 
+#![expect(
+    clippy::unwrap_used,
+    reason = "functions that tests share fail as tests do"
+)]
+
 mod support;
 
 use std::f64::consts::PI;
@@ -108,8 +113,8 @@ fn files_assembled_by_hand_mean_what_the_thesis_says() {
     let stl = |input: &str| {
         let clip = ["--box", "-6", "-6", "-3", "70", "6", "9"];
         let args = [
-            &[input, "-o", "-", "--to", "stl", "--level", "18"],
-            clip.as_slice(),
+            &[input, "-o", "-", "--to", "stl", "--level", "18"][..],
+            &clip,
         ]
         .concat();
         out(folder, &args, b"")
@@ -162,7 +167,7 @@ fn the_box_limits_the_solid_unless_l_is_given() {
     }
     let bounds = ["-B", "-1", "-1", "-1", "1", "1", "1"];
     let area = |limits: &[&str]| {
-        let convert = [&["csg2cspg"], limits, bounds.as_slice()].concat();
+        let convert = [&["csg2cspg"][..], limits, bounds.as_slice()].concat();
         let programs: [&[&str]; 3] = [&convert, &["subsimpl", "-N", "9"], &["propsimpl", "-A"]];
         measure(&pipeline(folder, &plane, &programs), "area")
     };
@@ -179,7 +184,7 @@ fn options_mean_what_the_thesis_says() {
     let boxed = ["csg2cspg", "-B", "-2", "-3", "-3", "4", "3", "3"];
     let cspg = pipeline(folder, &sector, &[&boxed]);
     let apl = |options: &[&str]| {
-        let args = [&["subsimpl"], options].concat();
+        let args = [&["subsimpl"][..], options].concat();
         pipeline(folder, &cspg, &[&args])
     };
     // The longest edge is 6√3: ⌈log₂(6√3 / 1)⌉ = 4 halvings are 12 levels, whatever -N says.
@@ -222,7 +227,7 @@ fn fixtures_are_saved_and_read_again() {
     for name in ["manchete", "atomo", "chupeta"] {
         let path = format!("{ROOT}/fixtures/thesis/{name}.csg");
         let file = format!("{name}.CSG");
-        out(folder, &[&path, "-o", &file, "--level", "6"], b"");
+        out(folder, &[path.as_str(), "-o", &file, "--level", "6"], b"");
         let volume = |input: &str| {
             let report = out(folder, &[input, "--level", "18", "--report", "-"], b"");
             let report: serde_json::Value = serde_json::from_slice(&report).unwrap();

@@ -121,14 +121,12 @@ fn groups(sectors: &[Sector], roots: Vec<Vec<(usize, Vec<f64>)>>) -> Vec<Group> 
     let mut roots = roots.into_iter();
     let mut rest = sectors;
     while let Some(first) = rest.first() {
-        let taken = box_of(rest);
-        let (count, place) = match taken {
-            Some(bounds) => (6, Place::Box(bounds)),
-            None => {
-                // A simplex of the same handedness stands for it.
-                let root = usize::from(volume(&first.vertices) < 0.0);
-                (1, Place::Simplex(root, first.vertices.map(DVec3::from)))
-            }
+        let (count, place) = if let Some(bounds) = box_of(rest) {
+            (6, Place::Box(bounds))
+        } else {
+            // A simplex of the same handedness stands for it.
+            let root = usize::from(volume(&first.vertices) < 0.0);
+            (1, Place::Simplex(root, first.vertices.map(DVec3::from)))
         };
         let (these, others) = rest.split_at(count);
         rest = others;

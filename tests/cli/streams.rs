@@ -109,7 +109,7 @@ fn wide_text_damaged_text_and_foreign_files_are_told_apart() {
         ),
         (
             b"hello",
-            "error: <stdin>: unknown file format (known: csg, the flat dump of OpenSCAD; choose one with --from csg)\n",
+            "error: <stdin>: unknown file format (known: csg, the flat dump of OpenSCAD; thesis-csg and apl, binary files of the thesis; choose one with --from csg)\n",
         ),
         (
             b"cube(1);\n\0\0",

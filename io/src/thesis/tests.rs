@@ -116,8 +116,8 @@ fn trees_and_formulas_mean_the_same() {
     });
     for inside in 0..8 {
         let [a, b, c] = [0, 1, 2].map(|at| inside >> at & 1 == 1);
-        assert_eq!(value(&formula, inside), a && !(b && !c));
-        assert_eq!(value(&again, inside), a && !(b && !c));
+        assert_eq!(value(&formula, inside), a && (!b || c));
+        assert_eq!(value(&again, inside), a && (!b || c));
     }
     assert!(Tree::new(vec![TreeNode::Leaf(0), TreeNode::Leaf(1)]).is_none());
     assert!(Tree::<u32>::new(vec![TreeNode::Operator(Operation::Union)]).is_none());
