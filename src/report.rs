@@ -46,6 +46,9 @@ pub(crate) struct Report {
     /// Largest distance of a facet from its surface, measured, where facets were taken from the
     /// surfaces.
     pub(crate) largest_deviation: Option<f64>,
+    /// Number of certified cells in whose neighbourhood only the distance from the mesh to the
+    /// true boundary is proved.
+    pub(crate) one_way_cells: u64,
     /// Whether mesh and true boundary were proved to be connected in the same way.
     pub(crate) proved_topology: bool,
     /// Where nothing is proved; the first of these places.
@@ -215,6 +218,7 @@ impl Report {
             centroid: None,
             proved_distance: None,
             largest_deviation: None,
+            one_way_cells: 0,
             proved_topology: false,
             uncertified: Vec::new(),
             uncertified_count: 0,
@@ -248,6 +252,7 @@ impl Report {
         self.counts.bisections = of.bisections;
         self.proved_distance = of.largest_deviation;
         self.proved_topology = of.proved_topology == Some(true);
+        self.one_way_cells = of.one_way_leaves;
         self.split_vertices = of.split_vertices;
         self.crossing_cells = of.crossing_leaves;
         self.uncertified_count = of.uncertified_leaves;

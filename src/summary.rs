@@ -39,7 +39,9 @@ fn facts(report: &Report) -> Vec<String> {
     }
     facts.push("watertight".to_owned());
     if let Some(distance) = report.proved_distance {
-        facts.push(if distance == 0.0 {
+        // Planes alone: what is left is the rounding of numbers.
+        let rounding = 1e-9 * report.settings.tolerance.unwrap_or(0.0);
+        facts.push(if distance <= rounding {
             "exact".to_owned()
         } else {
             format!("deviation <= {}", rounded_up(distance))

@@ -1,28 +1,30 @@
-//! The metric acceptance rule: when the affine interpolants are close enough to the truth.
+//! One polynomial in one simplex, as far as the metric acceptance rule needs it
+//! (`crate::deviation`; the whole argument is in `docs/accuracy.md`).
 //!
 //! In a simplex, with ℓ the affine interpolant of p at the vertices and ξ_α the domain points:
 //!
 //! * r = p − ℓ lies between (1 − 4^(1−n)) · min and max of c_α − ℓ(ξ_α) and zero: the four corner
-//!   coefficients agree, and the other Bernstein polynomials sum up to at most that factor. δ is
-//!   the larger bound's magnitude, |r| ≤ δ;
+//!   coefficients agree, and the other Bernstein polynomials sum up to at most that factor. The
+//!   range of a quadric's r is found exactly (`crate::remainder`);
 //! * ω = max r − min r bounds |p| in the mesh: its corners lie on p = 0, where ℓ = −r, or on
-//!   ℓ = 0, and between them ℓ is interpolated;
-//! * g = min of the Bernstein coefficients of ∂p/∂u, u the direction of ∇ℓ: where g > 0 the zero
-//!   set is a graph over the plane across u, and p = 0 is reached from the mesh within ω/g;
-//! * φ = largest angle between u and a control gradient.
+//!   ℓ = 0, and between them ℓ is interpolated. Where |p| > ω the mesh has p's sign. Both hold
+//!   for all finer simplices inside as well;
+//! * m = min of the Bernstein coefficients of ∂p/∂u, u the direction of ∇ℓ, is a lower bound of |∇p|;
+//! * H bounds the second derivatives within a radius of the simplex;
+//! * s = largest distance of a control gradient from ∇ℓ, so that within the radius
+//!   ∇p is at most φ = arcsin((s + radius·H)/|∇ℓ|) away from ∇ℓ.
 //!
-//! Where all outward normals have a common direction, several surfaces are as good as one: the
-//! solid is then `height ≤ F(h₁, …)` with the heights hᵢ of its surfaces along that direction and
-//! a formula F of minima and maxima, which changes by no more than its arguments do. Tangent
-//! surfaces, a dome on a cylinder, need nothing else.
-//!
-//! Otherwise a crease of two surfaces moves by at most √(d₁² + d₂² + 2·d₁·d₂·cos θ)/sin θ when they move by
-//! d₁ and d₂ and meet at an angle of at least θ = θ_ℓ − φ₁ − φ₂; a corner by at most
-//! √3·√(d₁² + d₂² + d₃²)/|det u| with the determinant of the three unit normals.
+//! All of them include the error e of the coefficients.
 
 use crate::bernstein::{count, for_each_index, index};
+use crate::margin::growth;
+use crate::remainder::quadric_remainder;
+use crate::rounding::UNIT_ROUNDOFF;
 use crate::simplex::Simplex;
-use glam::DVec3;
+use crate::snap::RESIDUAL;
+use crate::walk::Active;
+use csg::{Primitive, Ternary};
+use glam::{DMat3, DVec3};
 
 /// Index tables for one degree.
 #[derive(Clone, Debug)]
@@ -60,6 +62,41 @@ impl DegreeTable {
             raised,
         }
     }
+
+    /// Range, with zero, of c_α − ℓ(ξ_α), given ℓ by its values at the vertices.
+    fn remainder_range(&self, coefficients: &[f64], v: &[f64; 4]) -> (f64, f64) {
+        let (mut low, mut high) = (0.0f64, 0.0f64);
+        for (c, b) in coefficients.iter().zip(&self.points) {
+            let affine = b[0] * v[0] + b[1] * v[1] + b[2] * v[2] + b[3] * v[3];
+            low = low.min(c - affine);
+            high = high.max(c - affine);
+        }
+        (low, high)
+    }
+
+    /// Largest |c_α − ℓ(ξ_α)|.
+    #[must_use]
+    pub(crate) fn remainder(&self, coefficients: &[f64], values: &[f64; 4]) -> f64 {
+        if self.degree == 1 {
+            return 0.0;
+        }
+        let (low, high) = self.remainder_range(coefficients, values);
+        high.max(-low)
+    }
+
+    /// The control gradients n·Σ ∇b_v c_{α+e_v}, in storage order.
+    fn control_gradients<'a>(
+        &'a self,
+        coefficients: &'a [f64],
+        gradients: &BarycentricGradients,
+    ) -> impl Iterator<Item = DVec3> + 'a {
+        let scaled = gradients.map(|g| g * self.degree as f64);
+        self.raised.iter().map(move |raised| {
+            (0..4)
+                .map(|v| scaled[v] * coefficients[raised[v] as usize])
+                .sum()
+        })
+    }
 }
 
 impl DegreeTable {
@@ -96,237 +133,304 @@ pub(crate) fn barycentric_gradients(simplex: &Simplex) -> BarycentricGradients {
     [-(ga + gb + gc), ga, gb, gc]
 }
 
+/// Values at the vertices, and ∇ℓ.
+#[must_use]
+pub(crate) fn gradient(
+    table: &DegreeTable,
+    coefficients: &[f64],
+    gradients: &BarycentricGradients,
+) -> ([f64; 4], DVec3) {
+    let values = crate::bernstein::vertex_values(table.degree, coefficients);
+    (values, (0..4).map(|v| gradients[v] * values[v]).sum())
+}
+
+/// The neighbourhood for which a leaf is tested.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Around {
+    /// How far it reaches; at most the tolerance, in the domain's own units.
+    pub radius: f64,
+    /// Whether true boundary and mesh are to be reached from each other, or only the true
+    /// boundary from the mesh.
+    pub both_ways: bool,
+    /// N (`crate::margin`).
+    pub rate: f64,
+}
+
+/// A simplex with what all its sheets need.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Place {
+    /// Gradients of its barycentric coordinates.
+    pub gradients: BarycentricGradients,
+    /// N (`crate::margin`).
+    pub rate: f64,
+    /// The tolerance, in the domain's own units.
+    pub tolerance: f64,
+}
+
 /// What is known of one primitive in one simplex.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Sheet {
+    /// Its degree.
+    pub degree: usize,
     /// Values at the vertices.
     pub values: [f64; 4],
-    /// δ: bound on |p − ℓ|.
-    pub delta: f64,
-    /// ω: bound on |p| in the mesh.
-    pub swing: f64,
     /// ∇ℓ normalized.
     pub normal: DVec3,
     /// |∇ℓ|.
     pub slope: f64,
-    /// ω/g: bound on the distance between the mesh and p = 0.
-    pub deviation: f64,
-    /// φ, in radians; computed only where sheets meet.
-    pub spread_rad: f64,
+    /// ω; zero where the primitive has one sign in the simplex.
+    pub swing: f64,
+    /// m.
+    pub steepness: f64,
+    /// The parts of H: that of the mean second derivatives, and that which grows outside.
+    bend: [f64; 2],
+    /// s; computed only where sheets meet.
+    spread: f64,
+    /// Bound on the error of the coefficients.
+    pub error: f64,
 }
 
-/// Bounds one primitive; `None` when its deviation is not proved to be at most `tolerance`.
-#[must_use]
-pub(crate) fn sheet(
-    table: &DegreeTable,
-    coefficients: &[f64],
-    gradients: &BarycentricGradients,
-    tolerance: f64,
-) -> Option<Sheet> {
-    let n = table.degree;
-    let values = crate::bernstein::vertex_values(n, coefficients);
-    let gradient: DVec3 = (0..4).map(|v| gradients[v] * values[v]).sum();
-    let slope = gradient.length();
-    if slope == 0.0 {
-        return None;
-    }
-    let normal = gradient / slope;
-    if n == 1 {
-        return Some(Sheet {
-            values,
-            delta: 0.0,
-            swing: 0.0,
-            normal,
-            slope,
-            deviation: 0.0,
-            spread_rad: 0.0,
-        });
-    }
-    let (low, high) = if n == 2 {
-        quadric_remainder(coefficients)
-    } else {
-        let (mut low, mut high) = (0.0f64, 0.0f64);
-        for (c, b) in coefficients.iter().zip(&table.points) {
-            let affine = b[0] * values[0] + b[1] * values[1] + b[2] * values[2] + b[3] * values[3];
-            low = low.min(c - affine);
-            high = high.max(c - affine);
-        }
-        (low, high)
-    };
-    let share = 1.0 - 0.25f64.powf(n as f64 - 1.0);
-    let (delta, swing) = (share * high.max(-low), share * (high - low));
-    // Every coefficient of the derivative must exceed this; most fail at the first.
-    let needed = swing / tolerance;
-    let along = gradients.map(|g| g.dot(normal) * n as f64);
-    let mut steepness = f64::INFINITY;
-    for raised in &table.raised {
-        let derivative: f64 = (0..4)
-            .map(|v| along[v] * coefficients[raised[v] as usize])
-            .sum();
-        if derivative < needed || derivative <= 0.0 {
+impl Sheet {
+    /// Bounds a primitive.
+    ///
+    /// `control`: work space. `None` when even without other primitives p = 0 is not within the
+    /// tolerance of the mesh for certain.
+    ///
+    /// `tables`: those of degrees 1, 2, …; `bend`: H if it is known.
+    #[must_use]
+    pub(crate) fn new(
+        tables: &[DegreeTable],
+        active: &Active,
+        coefficients: &[f64],
+        place: &Place,
+        bend: Option<f64>,
+        control: &mut Vec<DVec3>,
+    ) -> Option<Self> {
+        let n = active.degree as usize;
+        let table = &tables[n - 1];
+        let (values, gradient) = gradient(table, coefficients, &place.gradients);
+        let slope = gradient.length();
+        let error = active.error();
+        // Only what halving rounded, and sums here, grows with Σ |∂b_v/∂u| ≤ 2N. What the root's
+        // coefficients were off by is the restriction of one polynomial, with N = √3 there, and
+        // the model's error bounds that of the derivatives, divided by the degree.
+        let halving =
+            active.rounding - active.root_rounding + 16.0 * UNIT_ROUNDOFF * active.largest;
+        let inherited = 4.0 * active.root_rounding + 2.0 * active.model_error;
+        let slope_error = n as f64 * (2.0 * place.rate * halving + inherited);
+        if slope <= slope_error {
             return None;
         }
-        steepness = steepness.min(derivative);
+        let normal = gradient / slope;
+        let mut sheet = Self {
+            degree: n,
+            values,
+            normal,
+            slope,
+            swing: 8.0 * error,
+            steepness: slope - slope_error,
+            bend: [0.0; 2],
+            spread: slope_error,
+            error,
+        };
+        if n == 1 {
+            if active.value != Ternary::Unknown {
+                sheet.swing = 0.0;
+            }
+            return Some(sheet);
+        }
+        let (low, high) = if n == 2 {
+            quadric_remainder(coefficients)
+        } else {
+            let (low, high) = table.remainder_range(coefficients, &values);
+            let share = 1.0 - 0.25f64.powf(n as f64 - 1.0);
+            (share * low, share * high)
+        };
+        // Vertices lie on the polynomials but for the residual that snapping leaves.
+        sheet.swing += high - low + 2.0 * RESIDUAL * active.largest;
+        if active.value != Ternary::Unknown {
+            sheet.swing = 0.0;
+        }
+        // Every coefficient of the derivative must exceed this; most fail at the first.
+        let needed = sheet.swing / place.tolerance + slope_error;
+        let along = place.gradients.map(|g| g.dot(normal) * n as f64);
+        let (mut steepness, mut steepest) = (f64::INFINITY, 0.0f64);
+        for raised in &table.raised {
+            let derivative: f64 = (0..4)
+                .map(|v| along[v] * coefficients[raised[v] as usize])
+                .sum();
+            if derivative <= needed {
+                return None;
+            }
+            steepness = steepness.min(derivative);
+            steepest = steepest.max(derivative);
+        }
+        // The diameter is at most 3/N, so H is probably larger than this; where it is, `reach`
+        // has no root. Refusing early costs a bisection at worst.
+        let bend_guess = (steepest - steepness) * place.rate / 3.0;
+        if sheet.swing * bend_guess > 0.5 * steepness * steepness {
+            return None;
+        }
+        sheet.steepness = steepness - slope_error;
+        sheet.bend = bend.map_or_else(
+            || {
+                control.clear();
+                control.extend(table.control_gradients(coefficients, &place.gradients));
+                let [mean, spread] = bend_of(&tables[n - 2], control, &place.gradients);
+                // Second differences of coefficients that are off by e.
+                let error = 2.0 * place.rate * (n - 1) as f64 * slope_error;
+                [mean + error, spread + error]
+            },
+            |bend| [bend, 0.0],
+        );
+        Some(sheet)
     }
-    Some(Sheet {
-        values,
-        delta,
-        swing,
-        normal,
-        slope,
-        deviation: swing / steepness,
-        spread_rad: 0.0,
-    })
+
+    /// H for a neighbourhood.
+    fn bend(&self, around: &Around) -> f64 {
+        let [mean, spread] = self.bend;
+        if spread == 0.0 {
+            return mean;
+        }
+        mean + spread * growth(self.degree - 2, around.radius * around.rate)
+    }
+
+    /// Finds s.
+    pub(crate) fn find_spread(&mut self, table: &DegreeTable, coefficients: &[f64], place: &Place) {
+        if self.degree > 1 {
+            let mean = self.normal * self.slope;
+            let far = |control: DVec3| (control - mean).length_squared();
+            let control = table.control_gradients(coefficients, &place.gradients);
+            self.spread += control.map(far).fold(0.0, f64::max).sqrt();
+        }
+    }
+
+    /// φ in radians, a right angle or less.
+    pub(crate) fn spread_rad(&self, around: &Around) -> f64 {
+        let sine = (self.spread + around.radius * self.bend(around)) / self.slope;
+        sine.min(1.0).asin()
+    }
+
+    /// The least distance in which the boundary may be reached, whatever is around.
+    pub(crate) fn least_reach(&self) -> f64 {
+        self.swing / self.steepness
+    }
+
+    /// The distance t after which p has surely passed from 0 to ±ω, or from ∓ω to 0, along
+    /// a direction that meets ∇p at a cosine of at least c: the smaller root of
+    ///
+    /// ```text
+    /// t·c·(m − t·H/2) = ω                    where c holds within the radius,
+    /// t·(c·(m − t·H) − t·H/2) = ω            both ways: where c holds at the start,
+    /// ```
+    ///
+    /// `None` when it exceeds the radius, or the left side does not grow up to there.
+    #[must_use]
+    pub(crate) fn reach(&self, cosine: f64, around: &Around) -> Option<f64> {
+        let curved = if around.both_ways {
+            cosine + 0.5
+        } else {
+            0.5 * cosine
+        };
+        let (linear, square) = (cosine * self.steepness, self.bend(around) * curved);
+        let radius = around.radius;
+        let grows = linear > 0.0 && 2.0 * radius * square <= linear;
+        if !grows || radius * (linear - radius * square) < self.swing {
+            return None;
+        }
+        let root = (linear * linear - 4.0 * self.swing * square)
+            .max(0.0)
+            .sqrt();
+        let reach = 2.0 * self.swing / (linear + root) * (1.0 + 1e-12);
+        (reach <= radius).then_some(reach)
+    }
 }
 
-/// Range, with zero, of a quadric's six edge coefficients less the means of the vertex values.
-fn quadric_remainder(c: &[f64]) -> (f64, f64) {
-    let Some(c) = c.first_chunk::<10>() else {
-        return (f64::NEG_INFINITY, f64::INFINITY);
+/// Norm of the mean of the Hessian's coefficients, which goes on outside, and their largest
+/// distance from it, which may grow there.
+///
+/// `table`: that of the gradient's degree; `control`: its coefficients.
+fn bend_of(table: &DegreeTable, control: &[DVec3], gradients: &BarycentricGradients) -> [f64; 2] {
+    let scaled = gradients.map(|g| g * table.degree as f64);
+    let hessian = |raised: &[u32; 4]| {
+        (0..4).fold(DMat3::ZERO, |sum, v| {
+            let g = control[raised[v] as usize];
+            sum + DMat3::from_cols(scaled[v] * g.x, scaled[v] * g.y, scaled[v] * g.z)
+        })
     };
-    let (mut low, mut high) = (0.0f64, 0.0f64);
-    for (edge, a, b) in [
-        (1, 0, 4),
-        (2, 0, 7),
-        (3, 0, 9),
-        (5, 4, 7),
-        (6, 4, 9),
-        (8, 7, 9),
-    ] {
-        let off = c[edge] - 0.5 * (c[a] + c[b]);
-        low = low.min(off);
-        high = high.max(off);
-    }
-    (low, high)
-}
-
-/// Largest angle between the control gradients and `normal`, in radians.
-#[must_use]
-pub(crate) fn spread_rad(
-    table: &DegreeTable,
-    coefficients: &[f64],
-    gradients: &BarycentricGradients,
-    normal: DVec3,
-) -> f64 {
-    if table.degree == 1 {
-        return 0.0;
-    }
-    let mut smallest_cosine = 1.0f64;
-    for raised in &table.raised {
-        let g: DVec3 = (0..4)
-            .map(|v| gradients[v] * coefficients[raised[v] as usize])
-            .sum();
-        smallest_cosine = smallest_cosine.min(g.dot(normal) / g.length());
-    }
-    smallest_cosine.clamp(-1.0, 1.0).acos()
-}
-
-/// Smallest directional derivative of a polynomial along the unit vector `direction`.
-#[must_use]
-pub(crate) fn slope_along(
-    table: &DegreeTable,
-    coefficients: &[f64],
-    gradients: &BarycentricGradients,
-    direction: DVec3,
-) -> f64 {
-    let along = gradients.map(|g| g.dot(direction) * table.degree as f64);
-    let derivative = |raised: &[u32; 4]| {
-        (0..4)
-            .map(|v| along[v] * coefficients[raised[v] as usize])
-            .sum::<f64>()
-    };
-    table
+    let sum = table
         .raised
         .iter()
-        .map(derivative)
-        .fold(f64::INFINITY, f64::min)
+        .fold(DMat3::ZERO, |sum, raised| sum + hessian(raised));
+    let mean = sum * (1.0 / table.raised.len() as f64);
+    let far = |raised: &[u32; 4]| norm(&(hessian(raised) - mean));
+    let spread = table.raised.iter().map(far).fold(0.0, f64::max);
+    [norm(&mean) * (1.0 + 1e-14), spread * (1.0 + 1e-14)]
 }
 
-/// Whether creases and corners of these sheets stay within the tolerance, too.
-///
-/// `coefficients(i)`: those of sheet i.
+/// Bound on |M x|/|x| for symmetric M: the smaller of two matrix norms.
+fn norm(m: &DMat3) -> f64 {
+    let columns = [m.x_axis, m.y_axis, m.z_axis];
+    let by_columns = columns.map(|c| c.abs().element_sum());
+    let squares: f64 = columns.iter().map(|c| c.length_squared()).sum();
+    by_columns
+        .into_iter()
+        .fold(0.0, f64::max)
+        .min(squares.sqrt())
+}
+
+/// Bound on the second derivatives of a quadric, in any direction; exact for balls.
 #[must_use]
-pub(crate) fn creases_within<'a>(
-    sheets: &[Sheet],
-    coefficients: impl Fn(usize) -> &'a [f64],
-    tolerance: f64,
-) -> bool {
-    let mut apart = [0u64; 64];
-    for i in 0..sheets.len().min(64) {
-        for j in 0..i {
-            let (a, b) = (&sheets[i], &sheets[j]);
-            if disjoint(a, coefficients(i), b, coefficients(j)) {
-                apart[i] |= 1 << j;
-                continue;
-            }
-            if a.delta == 0.0 && b.delta == 0.0 {
-                continue;
-            }
-            let cosine = a.normal.dot(b.normal).abs().min(1.0);
-            let angle = cosine.acos() - a.spread_rad - b.spread_rad;
-            if angle <= 0.0 {
-                return false;
-            }
-            let (d, e) = (a.deviation, b.deviation);
-            let reach = (d * d + e * e + 2.0 * d * e * angle.cos()).sqrt();
-            if reach > tolerance * angle.sin() {
-                return false;
-            }
-        }
+pub(crate) fn quadric_bend(primitive: &Primitive) -> Option<f64> {
+    let polynomial = &primitive.polynomial;
+    if polynomial.degree() != 2 {
+        return None;
     }
-    for i in 0..sheets.len().min(64) {
-        for j in 0..i {
-            for k in 0..j {
-                if apart[i] >> j & 1 == 1 || apart[i] >> k & 1 == 1 || apart[j] >> k & 1 == 1 {
-                    continue;
-                }
-                let three = [&sheets[i], &sheets[j], &sheets[k]];
-                if three.iter().all(|s| s.delta == 0.0) {
-                    continue;
-                }
-                let spread: f64 = three.iter().map(|s| s.spread_rad).sum();
-                let det = three[0]
-                    .normal
-                    .dot(three[1].normal.cross(three[2].normal))
-                    .abs()
-                    - spread;
-                let squares: f64 = three.iter().map(|s| s.deviation * s.deviation).sum();
-                if det <= 0.0 || (3.0 * squares).sqrt() > tolerance * det {
-                    return false;
-                }
-            }
-        }
-    }
-    true
+    let c = polynomial.coefficients();
+    let hessian = DMat3::from_cols(
+        DVec3::new(2.0 * c[0], c[1], c[2]),
+        DVec3::new(c[1], 2.0 * c[4], c[5]),
+        DVec3::new(c[2], c[5], 2.0 * c[7]),
+    );
+    // Six entries are off by up to twice the coefficients' error.
+    let error = 12.0 * primitive.coefficient_error;
+    Some(norm(&hessian) * (1.0 + 1e-14) + error)
 }
 
-/// Whether p − λq has one sign in the simplex for a suitable λ, so that the zero sets of p and q
-/// cannot meet there.
+/// Whether a + λb is proved to have one sign within three radii of the simplex for a
+/// suitable λ > 0, so that there a and b are never both positive or never both negative.
 ///
-/// Polynomials of one degree are compared coefficient by coefficient, which proves even the
-/// sheets of a very thin shell apart; others by their affine interpolants.
-fn disjoint(a: &Sheet, p: &[f64], b: &Sheet, q: &[f64]) -> bool {
-    let ratio = a.slope / b.slope;
-    [ratio, -ratio].into_iter().any(|lambda| {
-        if p.len() == q.len() {
-            let (mut low, mut high, mut size) = (f64::INFINITY, f64::NEG_INFINITY, 0.0f64);
-            for (p, q) in p.iter().zip(q) {
-                let d = p - lambda * q;
-                low = low.min(d);
-                high = high.max(d);
-                size = size.max(p.abs());
-            }
-            // The product and the difference round once each; |λq| is about |p| where d is small.
-            let slack = 4.0 * f64::EPSILON * (size + high.max(-low));
-            return low > slack || high < -slack;
-        }
-        let slack = a.delta + lambda.abs() * b.delta;
-        let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
-        for (p, q) in a.values.iter().zip(&b.values) {
-            let d = p - lambda * q;
-            low = low.min(d);
-            high = high.max(d);
-        }
-        low > slack || high < -slack
-    })
+/// `senses`: 1, or −1 for the negative polynomial. Polynomials of one degree are compared
+/// coefficient by coefficient, which proves even the sheets of a very thin shell apart.
+#[must_use]
+pub(crate) fn apart(
+    [a, b]: [&Sheet; 2],
+    [p, q]: [&[f64]; 2],
+    senses: [f64; 2],
+    tables: &[DegreeTable],
+    around: &Around,
+) -> bool {
+    let lambda = a.slope / b.slope * senses[1] * senses[0];
+    let overshoot = 3.0 * around.radius * around.rate;
+    let error = a.error + lambda.abs() * b.error;
+    let sum = |p: &[f64], q: &[f64]| {
+        let sums = p.iter().zip(q).map(|(p, q)| p + lambda * q);
+        sums.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), d| {
+            (low.min(d), high.max(d))
+        })
+    };
+    if p.len() == q.len() {
+        let (low, high) = sum(p, q);
+        let growth = growth(a.degree, overshoot);
+        let half = 0.5 * (high - low) * growth + 2.0 * error * growth;
+        return (0.5 * (high + low)).abs() > half;
+    }
+    let rest = |s: &Sheet, c: &[f64]| {
+        let remainder = tables[s.degree - 1].remainder(c, &s.values);
+        (remainder + 2.0 * s.error) * growth(s.degree, overshoot)
+    };
+    let slope = (a.normal * a.slope + b.normal * (b.slope * lambda)).length();
+    let slack = rest(a, p) + lambda.abs() * rest(b, q) + 3.0 * around.radius * slope;
+    let (low, high) = sum(&a.values, &b.values);
+    low > slack || high < -slack
 }

@@ -19,10 +19,23 @@ pub enum Criterion {
 /// A primitive in a simplex.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Class {
+    value: Ternary,
+    /// Its smallest coefficient.
+    pub low: f64,
+    /// Its largest one.
+    pub high: f64,
+}
+
+impl Class {
     /// `In` when p < 0 is proved in the whole simplex, `Out` when p > 0 is.
-    pub value: Ternary,
+    pub(crate) fn value(&self) -> Ternary {
+        self.value
+    }
+
     /// Its largest absolute coefficient.
-    pub largest: f64,
+    pub(crate) fn largest(&self) -> f64 {
+        self.high.max(-self.low)
+    }
 }
 
 /// Classifies against `p ≤ 0` in a simplex of type `kind`; `error` bounds the absolute error of
@@ -60,8 +73,7 @@ pub(crate) fn classify(
             Criterion::Rivlin => by_rivlin(degree, coefficients, error),
         }
     };
-    let largest = high.max(-low);
-    Class { value, largest }
+    Class { value, low, high }
 }
 
 /// The bound needs the sign at every coefficient but the extreme one.
@@ -137,7 +149,7 @@ mod tests {
         ) {
             let criterion = [Criterion::Bezier, Criterion::Rivlin, Criterion::Lipschitz][name];
             let c: Vec<f64> = seed[..count(degree)].iter().map(|x| x + shift).collect();
-            let class = classify(criterion, kind, degree, &c, 1e-12).value;
+            let class = classify(criterion, kind, degree, &c, 1e-12).value();
             for b in samples {
                 let sum = b.iter().sum::<f64>().max(1e-9);
                 let value = evaluate(degree, &c, b.map(|x| x / sum));
@@ -155,7 +167,7 @@ mod tests {
     fn rivlin_decides_more_than_bezier() {
         let mut c = vec![1.0; 10];
         c[3] = -0.4;
-        let by = |criterion| classify(criterion, 0, 2, &c, 0.0).value;
+        let by = |criterion| classify(criterion, 0, 2, &c, 0.0).value();
         assert_eq!(by(Criterion::Bezier), Ternary::Unknown);
         assert_eq!(by(Criterion::Rivlin), Ternary::Out);
     }

@@ -2,18 +2,20 @@
 
 use crate::balance::close;
 use crate::blossom::RootCoefficients;
-use crate::certify::DegreeTable;
+use crate::certify::{DegreeTable, quadric_bend};
 use crate::error::Error;
 use crate::fragments::Fragments;
 use crate::harvest::{Cut, extract, gather};
 use crate::lattice::MAX_LEVEL;
 use crate::limits::Budget;
+use crate::margin::Margin;
 use crate::prove::{Proof, Prover, prove};
 use crate::settings::{Observer, Report, Rule, Settings};
 use crate::topology::kindred::{Kin, families};
 use crate::walk::{Sector, Visitor, Walker};
 use csg::Solid;
 use rustc_hash::FxHashSet;
+use std::sync::Arc;
 use std::time::Instant;
 
 /// What the subdivision yields.
@@ -73,6 +75,10 @@ pub(crate) struct Plan<'a> {
     pub(crate) labelled: bool,
     /// Of each primitive, for the topological rule.
     pub(crate) families: Vec<Option<Kin>>,
+    /// Bound on the second derivatives of each quadric.
+    pub(crate) bends: Vec<Option<f64>>,
+    /// Three tolerances, with the metric rule.
+    pub(crate) margin: Option<Arc<Margin>>,
     pub(crate) max_level: u8,
 }
 
@@ -98,11 +104,14 @@ impl<'a> Plan<'a> {
         }
         let roots: Vec<_> = solid.primitives.iter().map(RootCoefficients::new).collect();
         let degrees = roots.iter().map(|r| r.degree).max().unwrap_or(1);
+        let tables: Vec<_> = (1..=degrees.max(1)).map(DegreeTable::new).collect();
         Ok(Self {
             solid,
             settings,
             roots,
-            tables: (1..=degrees.max(1)).map(DegreeTable::new).collect(),
+            bends: solid.primitives.iter().map(quadric_bend).collect(),
+            margin: tolerance.map(|t| Arc::new(Margin::new(3.0 * t, &tables))),
+            tables,
             tolerance,
             topology: matches!(settings.rule, Rule::Topology { .. }),
             families: families(&solid.primitives),
@@ -116,8 +125,15 @@ impl<'a> Plan<'a> {
         self.tolerance.is_some() || self.topology
     }
 
+    /// A walker whose frames hold what the formula needs in each simplex.
     pub(crate) fn walker(&self) -> Walker {
-        Walker::new(self.solid, self.settings.criterion)
+        Walker::new(self.solid, self.settings.criterion, None)
+    }
+
+    /// A walker whose frames also hold what it needs within three tolerances.
+    pub(crate) fn prover_walker(&self) -> Walker {
+        let margin = self.margin.clone();
+        Walker::new(self.solid, self.settings.criterion, margin)
     }
 }
 
@@ -214,7 +230,7 @@ fn run(plan: &Plan<'_>, observer: &dyn Observer) -> Result<Outcome, Error> {
 
 /// Bisects the roots breadth first until there is enough to share out.
 fn cut_into_sectors(plan: &Plan<'_>, prover: &mut Prover<'_>) -> Vec<Sector> {
-    let mut walker = plan.walker();
+    let mut walker = plan.prover_walker();
     let mut open: std::collections::VecDeque<_> = walker.roots(plan.solid, &plan.roots).into();
     let mut ended = Vec::new();
     while open.len() + ended.len() < SECTORS {

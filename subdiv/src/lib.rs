@@ -9,8 +9,8 @@
 //! Guaranteed for every input: the triangles form a closed, oriented 2-manifold without
 //! boundary; walls between different primitives survive at any thickness; the result depends on
 //! the solid and the settings only, not on the number of threads. With [`Rule::Tolerance`] the
-//! deviation of the affine interpolants is bounded in every leaf, except in those that the report
-//! lists as uncertified.
+//! distance between mesh and true boundary, creases, corners and rounding included, is proved to be
+//! within the tolerance, except at the leaves that the report lists as uncertified.
 //!
 //! Not guaranteed: that a component of one primitive is found which is smaller than the leaves
 //! at a fixed level, or that pieces of different uncertified leaves have the true topology.
@@ -38,6 +38,8 @@ mod blossom;
 mod certify;
 mod classify;
 mod convert;
+mod deviation;
+mod direction;
 mod error;
 mod extract;
 mod fragments;
@@ -49,6 +51,7 @@ mod leaf;
 mod leaf_formula;
 mod limits;
 mod lipschitz;
+mod margin;
 mod mesh;
 pub mod methods;
 mod patterns;
@@ -56,6 +59,7 @@ mod pieces;
 mod polygon;
 mod predicates;
 mod prove;
+mod remainder;
 mod rounding;
 pub mod sectors;
 mod settings;

@@ -1,11 +1,8 @@
-//! First traversal: where the metric rule (`crate::certify`) or the topological one
+//! First traversal: where the metric rule (`crate::deviation`) or the topological one
 //! (`crate::topology`) wants to bisect.
 
-use crate::certify::{
-    BarycentricGradients, Sheet, barycentric_gradients, creases_within, sheet, slope_along,
-    spread_rad,
-};
 use crate::convert::Plan;
+use crate::deviation::{DeviationRule, Proved};
 use crate::lattice::Point;
 use crate::limits::Budget;
 use crate::settings::{MAX_SPOTS, Observer, Reason, Report, Spot};
@@ -13,12 +10,13 @@ use crate::simplex::Simplex;
 use crate::topology::TopologyRule;
 use crate::trail::Trail;
 use crate::walk::{Frame, Pruning, Sector, Visitor};
-use csg::{Domain, FormulaNode, LocalizeScratch, PrimitiveId, Sense};
+use csg::{Domain, FormulaNode, LocalizeScratch, PrimitiveId, Ternary};
 use glam::DVec3;
 use rayon::prelude::*;
 
-/// Most primitives in a leaf that the metric rule accepts.
-const CROWD: usize = 8;
+/// A vertex is a sum of four corners, then scaled and shifted: some eight roundings on each axis,
+/// relative to the largest coordinate.
+const POSITION_ROUNDING: f64 = 16.0 * f64::EPSILON;
 
 /// What the first traversal found.
 #[derive(Debug)]
@@ -42,7 +40,7 @@ pub(crate) fn prove(
     let parts: Vec<Findings> = sectors
         .par_iter()
         .map_init(
-            || plan.walker(),
+            || plan.prover_walker(),
             |walker, sector| {
                 let mut prover = Prover::new(plan, budget);
                 walker.walk(sector, &mut prover);
@@ -64,6 +62,7 @@ pub(crate) fn prove(
         largest = largest.max(part.largest_deviation);
         report.visited += part.visited;
         report.uncertified_leaves += part.uncertified_leaves;
+        report.one_way_leaves += part.one_way_leaves;
         let room = MAX_SPOTS - report.uncertified.len();
         report
             .uncertified
@@ -71,7 +70,11 @@ pub(crate) fn prove(
     }
     splits.par_sort_unstable();
     splits.dedup();
-    report.largest_deviation = plan.tolerance.map(|_| largest * plan.solid.domain.size());
+    let domain = &plan.solid.domain;
+    let rounding = POSITION_ROUNDING * (domain.size() + domain.origin().abs().max_element());
+    report.largest_deviation = plan
+        .tolerance
+        .map(|_| largest * domain.size() * (1.0 + f64::EPSILON) + rounding);
     Proof { splits, trails }
 }
 
@@ -82,6 +85,7 @@ struct Findings {
     trail: Trail,
     visited: u64,
     largest_deviation: f64,
+    one_way_leaves: u64,
     uncertified_leaves: u64,
     uncertified: Vec<Spot>,
 }
@@ -92,7 +96,7 @@ pub(crate) struct Prover<'a> {
     budget: &'a Budget<'a>,
     findings: Findings,
     leaves: u64,
-    sheets: Vec<Sheet>,
+    rule: DeviationRule,
     topology: TopologyRule,
     /// What the last test found to be of no account.
     pruning: Pruning,
@@ -107,7 +111,7 @@ impl<'a> Prover<'a> {
             budget,
             findings: Findings::default(),
             leaves: 0,
-            sheets: Vec::new(),
+            rule: DeviationRule::default(),
             topology: TopologyRule::default(),
             pruning: Pruning::default(),
             pruned: Vec::new(),
@@ -119,78 +123,17 @@ impl<'a> Prover<'a> {
         self.budget.add_cells(std::mem::take(&mut self.leaves));
     }
 
-    /// The rule that was asked for; the largest deviation where the metric one accepts.
-    fn test(&mut self, simplex: &Simplex, frame: &Frame) -> Result<f64, Reason> {
-        if let Some(tolerance) = self.plan.tolerance {
-            return self.test_deviation(simplex, frame, tolerance);
+    /// The rule that was asked for.
+    fn test(&mut self, simplex: &Simplex, frame: &Frame) -> Result<Proved, Reason> {
+        if let Some(margin) = &self.plan.margin {
+            return self.rule.test(self.plan, margin, simplex, frame);
         }
         let verdict = self.topology.test(self.plan, simplex, frame);
         self.pruning = self.topology.pruning();
-        verdict.map(|()| 0.0)
-    }
-
-    /// The metric rule; the largest deviation where it accepts.
-    fn test_deviation(
-        &mut self,
-        simplex: &Simplex,
-        frame: &Frame,
-        tolerance: f64,
-    ) -> Result<f64, Reason> {
-        if frame.active.len() > CROWD {
-            return Err(Reason::Crowded);
-        }
-        self.sheets.clear();
-        let gradients = barycentric_gradients(simplex);
-        let mut largest = 0.0f64;
-        for active in &frame.active {
-            let table = &self.plan.tables[active.degree as usize - 1];
-            let coefficients = frame.coefficients_of(active);
-            let found =
-                sheet(table, coefficients, &gradients, tolerance).ok_or(Reason::Singular)?;
-            largest = largest.max(found.deviation);
-            self.sheets.push(found);
-        }
-        if self.sheets.len() > 1 && largest > 0.0 {
-            if let Some(deviation) = self.common_graph(frame, &gradients)
-                && deviation <= tolerance
-            {
-                return Ok(deviation);
-            }
-            for (active, found) in frame.active.iter().zip(&mut self.sheets) {
-                let table = &self.plan.tables[active.degree as usize - 1];
-                let coefficients = frame.coefficients_of(active);
-                found.spread_rad = spread_rad(table, coefficients, &gradients, found.normal);
-            }
-            let coefficients = |at: usize| frame.coefficients_of(&frame.active[at]);
-            if !creases_within(&self.sheets, coefficients, tolerance) {
-                return Err(Reason::Tangent);
-            }
-        }
-        Ok(largest)
-    }
-
-    /// The deviation of a leaf whose boundary is one graph over the plane across some direction.
-    fn common_graph(&self, frame: &Frame, gradients: &BarycentricGradients) -> Option<f64> {
-        let mut outward = arrayvec::ArrayVec::<f64, CROWD>::new();
-        for active in &frame.active {
-            outward.push(single_sense(&frame.formula, active.primitive)?);
-        }
-        let sum: DVec3 = (self.sheets.iter().zip(&outward))
-            .map(|(sheet, sign)| sheet.normal * *sign)
-            .sum();
-        let direction = sum.try_normalize()?;
-        let mut largest = 0.0f64;
-        for ((active, sheet), sign) in frame.active.iter().zip(&self.sheets).zip(&outward) {
-            let table = &self.plan.tables[active.degree as usize - 1];
-            let coefficients = frame.coefficients_of(active);
-            let slope = slope_along(table, coefficients, gradients, direction * *sign);
-            // Steeper than 75° against the direction is no graph to rely on.
-            if slope < 0.25 * sheet.slope {
-                return None;
-            }
-            largest = largest.max(sheet.swing / slope);
-        }
-        Some(largest)
+        verdict.map(|()| Proved {
+            distance: 0.0,
+            both_ways: true,
+        })
     }
 
     /// Whether to bisect.
@@ -200,8 +143,10 @@ impl<'a> Prover<'a> {
         match verdict {
             // The surfaces that failed do not matter.
             _ if frame.active.is_empty() => {}
-            Ok(deviation) => {
-                self.findings.largest_deviation = self.findings.largest_deviation.max(deviation);
+            Ok(proved) => {
+                let largest = &mut self.findings.largest_deviation;
+                *largest = largest.max(proved.distance);
+                self.findings.one_way_leaves += u64::from(!proved.both_ways);
             }
             Err(_) if simplex.level < self.plan.max_level => {
                 self.findings.splits.push(simplex.midpoint());
@@ -227,7 +172,8 @@ impl Spot {
     /// A leaf, with why nothing is proved there.
     pub(crate) fn new(domain: &Domain, simplex: &Simplex, frame: &Frame, reason: Reason) -> Self {
         let corners = simplex.vertices.map(|v| domain.to_model(v.position()));
-        let primitives = frame.active.iter().map(|a| PrimitiveId(a.primitive));
+        let crossing = frame.active.iter().filter(|a| a.value == Ternary::Unknown);
+        let primitives = crossing.map(|a| PrimitiveId(a.primitive));
         Self {
             position: corners.iter().copied().sum::<DVec3>() * 0.25,
             size: corners[0].distance(corners[3]),
@@ -251,24 +197,4 @@ impl Visitor for Prover<'_> {
     fn stopped(&self) -> bool {
         self.budget.stopped()
     }
-}
-
-/// 1 when all literals of a primitive mean its inside, so that its gradient points outward, −1
-/// when all mean its outside, `None` when both occur.
-fn single_sense(formula: &[FormulaNode], primitive: u32) -> Option<f64> {
-    let mut found = None;
-    for node in formula {
-        if let FormulaNode::Literal(literal) = node
-            && literal.primitive.0 == primitive
-        {
-            if found.is_some_and(|sense| sense != literal.sense) {
-                return None;
-            }
-            found = Some(literal.sense);
-        }
-    }
-    Some(match found? {
-        Sense::Inside => 1.0,
-        Sense::Outside => -1.0,
-    })
 }

@@ -7,7 +7,7 @@ use glam::DVec3;
 /// When subdivision ends.
 #[derive(Clone, Copy, PartialEq, Debug)]
 pub enum Rule {
-    /// When the proved deviation of every affine interpolant is at most this, in model units.
+    /// When mesh and true boundary are proved to be at most this far apart, in model units.
     Tolerance(f64),
     /// When the interpolants are proved to have the solid's topology: components, holes, faces,
     /// creases and corners, whatever the deviation (`docs/topology.md`). Cells no larger than
@@ -94,13 +94,16 @@ pub struct Report {
     pub balance_points: u64,
     /// Deepest level of a leaf.
     pub deepest_level: u8,
-    /// Largest deviation proved for a single surface in a certified leaf, in model units; `None`
-    /// when no leaf was tested (fixed level).
+    /// Largest proved distance between mesh and true boundary over all certified leaves, in model
+    /// units, rounding included; `None` when no leaf was tested (fixed level).
     pub largest_deviation: Option<f64>,
     /// Whether the topology is proved everywhere; `None` when another rule decided.
     pub proved_topology: Option<bool>,
     /// Extractions that were repeated since a leaf of the closure failed the rule.
     pub rounds: u64,
+    /// Number of certified leaves in whose neighbourhood only the mesh is proved to be near the
+    /// true boundary, not the other way round.
+    pub one_way_leaves: u64,
     /// Number of leaves that are not certified.
     pub uncertified_leaves: u64,
     /// The first of them, at most [`MAX_SPOTS`].

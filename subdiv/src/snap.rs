@@ -30,6 +30,10 @@ pub(crate) struct Snapper {
     edge: Vec<f64>,
 }
 
+/// Values at snapped vertices are at most this part of the polynomial's largest coefficient:
+/// roots on edges are found to rounding, others are checked.
+pub(crate) const RESIDUAL: f64 = 1e-11;
+
 /// Most Newton steps; convergence is quadratic from an answer that is already close.
 const NEWTON_STEPS: usize = 12;
 
@@ -168,8 +172,7 @@ impl Snapper {
                 size = size.max(step[at].abs());
             }
             if size <= 1e-15 || (size <= 1e-12 && size >= last_step) {
-                let inside = b.iter().all(|x| *x >= 0.0);
-                return inside.then_some(b);
+                return self.accepted(polynomials, b);
             }
             // Far outside or slow: not the root that the arrangement means.
             if b.iter().any(|x| x.abs() > 4.0) {
@@ -177,7 +180,20 @@ impl Snapper {
             }
             last_step = size;
         }
-        (last_step <= 1e-12 && b.iter().all(|x| *x >= 0.0)).then_some(b)
+        if last_step <= 1e-12 {
+            self.accepted(polynomials, b)
+        } else {
+            None
+        }
+    }
+
+    /// The point itself if it lies in the closed face and on all the polynomials.
+    fn accepted(&mut self, polynomials: &[LeafPolynomial<'_>], b: [f64; 4]) -> Option<[f64; 4]> {
+        let on = |p: &LeafPolynomial<'_>| {
+            let largest = p.coefficients.iter().fold(0.0f64, |m, c| m.max(c.abs()));
+            self.value(*p, b).abs() <= RESIDUAL * largest
+        };
+        (b.iter().all(|x| *x >= 0.0) && polynomials.iter().all(on)).then_some(b)
     }
 }
 

@@ -5,9 +5,11 @@ use crate::bernstein::{count, vertex_values};
 use crate::blossom::RootCoefficients;
 use crate::classify::{Criterion, classify};
 use crate::halving::halve;
+use crate::margin::Margin;
 use crate::rounding::of_halving;
 use crate::simplex::Simplex;
 use csg::{FormulaNode, LocalizeScratch, PrimitiveId, Solid, Ternary, localize};
+use std::sync::Arc;
 
 /// A primitive whose sign is not known in a simplex.
 #[derive(Clone, Copy, Debug)]
@@ -27,6 +29,8 @@ pub(crate) struct Active {
     pub model_error: f64,
     /// Its largest absolute coefficient.
     pub largest: f64,
+    /// Its sign, where that is known in the simplex but not everywhere near it.
+    pub value: Ternary,
 }
 
 impl Active {
@@ -42,7 +46,8 @@ impl Active {
 pub(crate) struct Frame {
     /// Bernstein coefficients of the active primitives, one after the other.
     pub coefficients: Vec<f64>,
-    /// The primitives that the formula needs, ascending.
+    /// The primitives that the formula needs, ascending; with a margin also those that it needs
+    /// near the simplex.
     pub active: Vec<Active>,
     /// The formula pruned to them.
     pub formula: Vec<FormulaNode>,
@@ -148,10 +153,16 @@ pub(crate) trait Visitor {
 #[derive(Debug)]
 pub(crate) struct Walker {
     criterion: Criterion,
+    /// How far around a simplex a sign must hold to be forgotten.
+    margin: Option<Arc<Margin>>,
     /// Two children per level below the sector.
     frames: Vec<[Frame; 2]>,
-    /// Value of each primitive in the child at hand.
+    /// Value of each primitive in and around the children at hand.
     values: [Vec<Ternary>; 2],
+    /// Value of each active primitive in them.
+    inner_values: [Vec<Ternary>; 2],
+    /// A formula that nobody needs.
+    discarded: Vec<FormulaNode>,
     /// Marks the primitives that a pruned formula uses.
     used: Vec<u32>,
     stamp: u32,
@@ -159,14 +170,19 @@ pub(crate) struct Walker {
 }
 
 impl Walker {
-    /// A walker for this solid.
+    /// A walker for this solid. With a margin, frames also hold what the formula needs near
+    /// their simplex; the simplices visited are the same.
     #[must_use]
-    pub(crate) fn new(solid: &Solid, criterion: Criterion) -> Self {
+    pub(crate) fn new(solid: &Solid, criterion: Criterion, margin: Option<Arc<Margin>>) -> Self {
         let n = solid.primitives.len();
+        let unknown = || vec![Ternary::Unknown; n];
         Self {
             criterion,
+            margin,
             frames: Vec::new(),
-            values: [vec![Ternary::Unknown; n], vec![Ternary::Unknown; n]],
+            values: [unknown(), unknown()],
+            inner_values: [unknown(), unknown()],
+            discarded: Vec::new(),
             used: vec![0; n],
             stamp: 0,
             scratch: LocalizeScratch::default(),
@@ -181,7 +197,7 @@ impl Walker {
             let mut frame = Frame::default();
             for (primitive, root) in roots.iter().enumerate() {
                 let coefficients = &root.roots[at];
-                let mut active = Active {
+                let active = Active {
                     primitive: primitive as u32,
                     degree: root.degree as u32,
                     offset: frame.coefficients.len() as u32,
@@ -189,21 +205,19 @@ impl Walker {
                     root_rounding: root.rounding,
                     model_error: root.model_error,
                     largest: 0.0,
+                    value: Ternary::Unknown,
                 };
-                let class = classify(self.criterion, 0, root.degree, coefficients, active.error());
-                self.values[0][primitive] = class.value;
-                if class.value == Ternary::Unknown {
-                    active.largest = class.largest;
-                    frame.active.push(active);
-                    frame.coefficients.extend_from_slice(coefficients);
-                }
+                frame.coefficients.extend_from_slice(coefficients);
+                self.classify(0, &simplex, &mut frame, active);
             }
             let values = &self.values[0];
             let value = |p: PrimitiveId| values[p.0 as usize];
             let nodes = solid.formula.nodes();
             if localize(nodes, value, &mut frame.formula, &mut self.scratch) == Ternary::Unknown {
                 self.drop_unused(&mut frame);
-                sectors.push(Sector { simplex, frame });
+                if self.is_undecided(&frame, 0) {
+                    sectors.push(Sector { simplex, frame });
+                }
             }
         }
         sectors
@@ -213,8 +227,8 @@ impl Walker {
     #[must_use]
     pub(crate) fn bisect(&mut self, sector: &Sector) -> Vec<Sector> {
         let mut frames = [Frame::default(), Frame::default()];
-        let undecided = self.descend(&sector.frame, sector.simplex.kind(), &mut frames);
         let children = sector.simplex.children();
+        let undecided = self.descend(&sector.frame, sector.simplex.kind(), &children, &mut frames);
         let all = children.into_iter().zip(frames).zip(undecided);
         all.filter(|(_, undecided)| *undecided)
             .map(|((simplex, frame), _)| Sector { simplex, frame })
@@ -242,8 +256,8 @@ impl Walker {
         }
         // Taken out, and put back with its buffers when this level is done.
         let mut frames = std::mem::take(&mut self.frames[depth]);
-        let undecided = self.descend(frame, simplex.kind(), &mut frames);
         let children = simplex.children();
+        let undecided = self.descend(frame, simplex.kind(), &children, &mut frames);
         for side in 0..2 {
             if undecided[side]
                 && !visitor.stopped()
@@ -256,11 +270,17 @@ impl Walker {
     }
 
     /// Fills the frames of both children; tells in which the formula is undecided.
-    fn descend(&mut self, parent: &Frame, kind: u8, frames: &mut [Frame; 2]) -> [bool; 2] {
+    fn descend(
+        &mut self,
+        parent: &Frame,
+        kind: u8,
+        children: &[Simplex; 2],
+        frames: &mut [Frame; 2],
+    ) -> [bool; 2] {
         let [near, far] = frames;
         near.clear();
         far.clear();
-        let mut decided = [false; 2];
+        let mut forgotten = [false; 2];
         for active in &parent.active {
             let degree = active.degree as usize;
             let length = count(degree);
@@ -274,53 +294,102 @@ impl Walker {
                 &mut near.coefficients[starts[0]..],
                 &mut far.coefficients[starts[1]..],
             );
-            let mut child = Active {
-                rounding: of_halving(degree, active.rounding, active.largest),
-                ..*active
-            };
+            let rounding = of_halving(degree, active.rounding, active.largest);
             for (side, frame) in [&mut *near, &mut *far].into_iter().enumerate() {
-                let start = starts[side];
-                let coefficients = &frame.coefficients[start..];
-                let kind = (kind + 1) % 3;
-                let class = classify(self.criterion, kind, degree, coefficients, child.error());
-                self.values[side][active.primitive as usize] = class.value;
-                if class.value == Ternary::Unknown {
-                    child.offset = start as u32;
-                    child.largest = class.largest;
-                    frame.active.push(child);
-                } else {
-                    frame.coefficients.truncate(start);
-                    decided[side] = true;
-                }
+                let child = Active {
+                    offset: starts[side] as u32,
+                    rounding,
+                    ..*active
+                };
+                forgotten[side] |= !self.classify(side, &children[side], frame, child);
             }
         }
-        let near_open = self.prune(parent, near, 0, decided[0]);
-        let far_open = self.prune(parent, far, 1, decided[1]);
+        let near_open = self.prune(parent, near, 0, forgotten[0]);
+        let far_open = self.prune(parent, far, 1, forgotten[1]);
         [near_open, far_open]
     }
 
+    /// Classifies the primitive whose coefficients end the frame's list, and keeps it unless its
+    /// sign is known in the simplex and around it; whether it was kept.
+    fn classify(
+        &mut self,
+        side: usize,
+        simplex: &Simplex,
+        frame: &mut Frame,
+        mut active: Active,
+    ) -> bool {
+        let (degree, start) = (active.degree as usize, active.offset as usize);
+        let coefficients = &frame.coefficients[start..];
+        let class = classify(
+            self.criterion,
+            simplex.kind(),
+            degree,
+            coefficients,
+            active.error(),
+        );
+        // What was known of the parent is known of its children.
+        if active.value == Ternary::Unknown {
+            active.value = class.value();
+        }
+        let decided = active.value != Ternary::Unknown;
+        let forget = decided
+            && self.margin.as_ref().is_none_or(|margin| {
+                margin.keeps_sign(
+                    margin.radius,
+                    simplex,
+                    degree,
+                    coefficients,
+                    &class,
+                    active.error(),
+                )
+            });
+        let primitive = active.primitive as usize;
+        self.inner_values[side][primitive] = active.value;
+        if forget {
+            self.values[side][primitive] = active.value;
+            frame.coefficients.truncate(start);
+            return false;
+        }
+        self.values[side][primitive] = Ternary::Unknown;
+        active.largest = class.largest();
+        frame.active.push(active);
+        true
+    }
+
     /// Prunes the parent's formula for a child; whether it stays undecided.
-    fn prune(&mut self, parent: &Frame, child: &mut Frame, side: usize, decided: bool) -> bool {
-        if !decided {
+    fn prune(&mut self, parent: &Frame, child: &mut Frame, side: usize, forgotten: bool) -> bool {
+        if !child.active.iter().any(|a| a.value == Ternary::Unknown) {
+            return false;
+        }
+        if forgotten {
+            let values = &self.values[side];
+            let value = |p: PrimitiveId| values[p.0 as usize];
+            let result = localize(
+                &parent.formula,
+                value,
+                &mut child.formula,
+                &mut self.scratch,
+            );
+            if result != Ternary::Unknown {
+                return false;
+            }
+            self.drop_unused(child);
+        } else {
             child.formula.extend_from_slice(&parent.formula);
+        }
+        self.is_undecided(child, side)
+    }
+
+    /// Whether the formula is undecided in a simplex, given that it is so around it.
+    fn is_undecided(&mut self, frame: &Frame, side: usize) -> bool {
+        if frame.active.iter().all(|a| a.value == Ternary::Unknown) {
             return true;
         }
-        if child.active.is_empty() {
-            return false;
-        }
-        let values = &self.values[side];
+        let values = &self.inner_values[side];
         let value = |p: PrimitiveId| values[p.0 as usize];
-        let result = localize(
-            &parent.formula,
-            value,
-            &mut child.formula,
-            &mut self.scratch,
-        );
-        if result != Ternary::Unknown {
-            return false;
-        }
-        self.drop_unused(child);
-        true
+        self.discarded.clear();
+        let discarded = &mut self.discarded;
+        localize(&frame.formula, value, discarded, &mut self.scratch) == Ternary::Unknown
     }
 
     /// Keeps only the active primitives that the formula still mentions.

@@ -44,7 +44,7 @@ pub fn adaptive(solid: &Solid, criterion: Criterion, level: u8, halt: Halt) -> A
     let level = level.min(crate::MAX_LEVEL);
     let primitives = solid.primitives.len();
     let roots: Vec<_> = solid.primitives.iter().map(RootCoefficients::new).collect();
-    let mut walker = Walker::new(solid, criterion);
+    let mut walker = Walker::new(solid, criterion, None);
     let at_roots = 6 * primitives as u64;
     let mut count = Count {
         done: Adaptive {

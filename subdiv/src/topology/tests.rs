@@ -56,6 +56,7 @@ impl Sample {
             root_rounding: 0.0,
             model_error: 0.0,
             largest: self.coefficients.iter().fold(0.0, |m, c| c.abs().max(m)),
+            value: csg::Ternary::Unknown,
         }
     }
 
@@ -399,6 +400,7 @@ proptest! {
             root_rounding: roots.rounding,
             model_error: roots.model_error,
             largest: 0.0,
+            value: csg::Ternary::Unknown,
         };
         for far in turns {
             active.largest = coefficients.iter().fold(0.0, |m, c| c.abs().max(m));

@@ -1,0 +1,150 @@
+//! Signs that hold not only in a simplex but within some distance of it.
+//!
+//! A polynomial is the same one outside a simplex: at barycentric coordinates whose negative ones
+//! sum up to −o, the Bernstein polynomials of degree n have absolute values that sum up to at most
+//! (1 + 2o)ⁿ. So a polynomial whose coefficients lie in \[m − r, m + r\] stays within r·(1 + 2o)ⁿ of
+//! m there. Within a distance d of the simplex o is at most d·N with
+//!
+//! ```text
+//! N = max over unit vectors e of ½·Σ |∇b_v · e| = max over sets V of vertices of |Σ_{v in V} ∇b_v|.
+//! ```
+
+use crate::certify::{BarycentricGradients, DegreeTable, barycentric_gradients, gradient};
+use crate::classify::Class;
+use crate::simplex::Simplex;
+
+/// N, the largest rate at which negative barycentric coordinates grow with the distance.
+#[must_use]
+pub(crate) fn outward_rate([a, b, c, d]: &BarycentricGradients) -> f64 {
+    let squares = [*a, *b, *c, *d, *a + *b, *a + *c, *a + *d].map(glam::DVec3::length_squared);
+    // Rounded outwards: some ten operations.
+    squares.into_iter().fold(0.0, f64::max).sqrt() * (1.0 + 1e-14)
+}
+
+/// (1 + 2o)ⁿ, rounded outwards.
+#[must_use]
+pub(crate) fn growth(degree: usize, overshoot: f64) -> f64 {
+    let base = 1.0 + 2.0 * overshoot;
+    (0..degree).fold(1.0, |power, _| power * base) * (1.0 + 1e-13)
+}
+
+/// How far around its simplex a sign must hold.
+#[derive(Debug)]
+pub(crate) struct Margin {
+    /// The distance, if no other is given.
+    pub(crate) radius: f64,
+    /// N for the simplices of each level.
+    rates: Vec<f64>,
+    tables: Vec<DegreeTable>,
+}
+
+impl Margin {
+    /// A margin of `radius`; `tables`: those of degrees 1, 2, …
+    #[must_use]
+    pub(crate) fn new(radius: f64, tables: &[DegreeTable]) -> Self {
+        // Simplices of one level are congruent.
+        let [mut simplex, ..] = Simplex::roots();
+        let mut rates = Vec::new();
+        for _ in 0..=crate::lattice::MAX_LEVEL {
+            rates.push(outward_rate(&barycentric_gradients(&simplex)));
+            [simplex, _] = simplex.children();
+        }
+        Self {
+            radius,
+            rates,
+            tables: tables.to_vec(),
+        }
+    }
+
+    /// N for the simplices of a level.
+    #[must_use]
+    pub(crate) fn rate(&self, level: u8) -> f64 {
+        self.rates[usize::from(level)]
+    }
+
+    /// Whether a polynomial that has one sign in the simplex is proved to keep it within `radius`
+    /// of it.
+    #[must_use]
+    pub(crate) fn keeps_sign(
+        &self,
+        radius: f64,
+        simplex: &Simplex,
+        degree: usize,
+        coefficients: &[f64],
+        class: &Class,
+        error: f64,
+    ) -> bool {
+        let growth = growth(degree, radius * self.rate(simplex.level));
+        let (middle, half) = (
+            0.5 * (class.high + class.low),
+            0.5 * (class.high - class.low),
+        );
+        let error = 2.0 * error * growth;
+        if middle.abs() > half * growth + error {
+            return true;
+        }
+        // More sharply: the affine part goes on as it is, only the rest may grow.
+        let table = &self.tables[degree - 1];
+        let (values, slope) = gradient(table, coefficients, &barycentric_gradients(simplex));
+        let nearest = values.iter().map(|v| v.abs()).fold(f64::INFINITY, f64::min);
+        let rest = table.remainder(coefficients, &values);
+        nearest > radius * slope.length() + rest * growth + error
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::bernstein::{count, evaluate};
+    use crate::classify::{Criterion, classify};
+    use csg::Ternary;
+    use glam::DVec3;
+    use proptest::prelude::*;
+
+    proptest! {
+        /// Points at most the radius away from a random point of a random simplex.
+        #[test]
+        fn signs_are_kept_within_the_radius(
+            degree in 1usize..5, turns in proptest::collection::vec(any::<bool>(), 0..12),
+            seed in proptest::collection::vec(-1.0..1.0f64, 35), shift in 0.5..4.0f64,
+            radius in 0.001..0.3f64, b in proptest::array::uniform4(0.0..1.0f64),
+            directions in proptest::collection::vec(proptest::array::uniform3(-1.0..1.0f64), 20),
+        ) {
+            let mut simplex = Simplex::roots()[2];
+            for turn in turns {
+                simplex = simplex.children()[usize::from(turn)];
+            }
+            let tables: Vec<_> = (1..5).map(DegreeTable::new).collect();
+            let margin = Margin::new(radius, &tables);
+            let c: Vec<f64> = seed[..count(degree)].iter().map(|x| x + shift).collect();
+            let class = classify(Criterion::Bezier, simplex.kind(), degree, &c, 0.0);
+            if class.value() != Ternary::Out || !margin.keeps_sign(radius, &simplex, degree, &c, &class, 0.0) {
+                return Ok(());
+            }
+            let gradients = barycentric_gradients(&simplex);
+            // On the simplex' surface, where leaving it is quickest.
+            let mut b = b;
+            b[degree % 4] = 0.0;
+            let sum = b.iter().sum::<f64>().max(1e-9);
+            let b = b.map(|x| x / sum);
+            for direction in directions {
+                let by = DVec3::from(direction).normalize_or_zero() * radius;
+                let moved: [f64; 4] = std::array::from_fn(|v| b[v] + gradients[v].dot(by));
+                prop_assert!(evaluate(degree, &c, moved) > 0.0);
+            }
+        }
+    }
+
+    #[test]
+    fn simplices_of_a_level_leave_equally_fast() {
+        let mut layer: Vec<Simplex> = Simplex::roots().into();
+        for _ in 0..7 {
+            let rates: Vec<f64> = layer
+                .iter()
+                .map(|s| outward_rate(&barycentric_gradients(s)))
+                .collect();
+            assert!(rates.iter().all(|r| (r / rates[0] - 1.0).abs() < 1e-12));
+            layer = layer.iter().flat_map(Simplex::children).collect();
+        }
+    }
+}
