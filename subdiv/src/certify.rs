@@ -234,9 +234,12 @@ impl Sheet {
             error,
         };
         if n == 1 {
-            if active.value != Ternary::Unknown {
-                sheet.swing = 0.0;
-            }
+            // Planes are their own interpolants.
+            sheet.swing = if active.value == Ternary::Unknown {
+                2.0 * error
+            } else {
+                0.0
+            };
             return Some(sheet);
         }
         let (low, high) = if n == 2 {

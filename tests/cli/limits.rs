@@ -31,10 +31,14 @@ fn a_hundred_thousand_levels_are_converted() {
         let model = format!("{}cube(1);{}", open.repeat(n), "}".repeat(n));
         let (code, said) = convert(&model, &[]);
         assert_eq!(code, 0, "{said}");
-        assert!(
-            said.contains("1 solid, genus 0, volume 1, watertight, exact"),
-            "{said}"
-        );
+        // Sums up to 100 of numbers that are no binary fractions are rounded each time.
+        let proved = if open.starts_with("multmatrix") {
+            "deviation <= "
+        } else {
+            "exact"
+        };
+        let expected = format!("1 solid, genus 0, volume 1, watertight, {proved}");
+        assert!(said.contains(&expected), "{said}");
     }
 }
 
