@@ -253,6 +253,7 @@ impl Report {
         self.proved_distance = of.largest_deviation;
         self.proved_topology = of.proved_topology == Some(true);
         self.one_way_cells = of.one_way_leaves;
+        self.volume_interval = of.volume_interval;
         self.split_vertices = of.split_vertices;
         self.crossing_cells = of.crossing_leaves;
         self.uncertified_count = of.uncertified_leaves;

@@ -144,6 +144,21 @@ pub(crate) fn gradient(
     (values, (0..4).map(|v| gradients[v] * values[v]).sum())
 }
 
+/// Range, with zero, of p − ℓ.
+#[must_use]
+pub(crate) fn remainder_bounds(table: &DegreeTable, coefficients: &[f64]) -> (f64, f64) {
+    match table.degree {
+        1 => (0.0, 0.0),
+        2 => quadric_remainder(coefficients),
+        n => {
+            let values = crate::bernstein::vertex_values(n, coefficients);
+            let (low, high) = table.remainder_range(coefficients, &values);
+            let share = 1.0 - 0.25f64.powf(n as f64 - 1.0);
+            (share * low, share * high)
+        }
+    }
+}
+
 /// The neighbourhood for which a leaf is tested.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Around {
@@ -242,13 +257,7 @@ impl Sheet {
             };
             return Some(sheet);
         }
-        let (low, high) = if n == 2 {
-            quadric_remainder(coefficients)
-        } else {
-            let (low, high) = table.remainder_range(coefficients, &values);
-            let share = 1.0 - 0.25f64.powf(n as f64 - 1.0);
-            (share * low, share * high)
-        };
+        let (low, high) = remainder_bounds(table, coefficients);
         // Vertices lie on the polynomials but for the residual that snapping leaves.
         sheet.swing += high - low + 2.0 * RESIDUAL * active.largest;
         if active.value != Ternary::Unknown {

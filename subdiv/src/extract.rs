@@ -12,11 +12,13 @@ use crate::leaf_formula::{Label, LeafFormula, MAX_LEAF_PRIMITIVES};
 use crate::mesh::MeshBuilder;
 use crate::pieces::CellComplex;
 use crate::polygon::{Corner, PieceTriangulator};
+use crate::predicates::{Sign, vertex_sign};
 use crate::simplex::Simplex;
 use crate::snap::LeafPolynomial;
 use crate::vertices::{CellSide, VertexNamer};
+use crate::volume::wedge;
 use crate::walk::Frame;
-use csg::FormulaNode;
+use csg::{FormulaNode, Sense};
 
 /// A leaf that could not be extracted.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
@@ -35,6 +37,9 @@ pub(crate) struct Extractor {
     ring: Vec<Corner>,
     boundary: Vec<u32>,
     triangulator: PieceTriangulator,
+    /// Where the last leaf had one primitive only: the fraction of the leaf on its negative side,
+    /// and the sense in which the solid lies there.
+    pub(crate) cut: Option<(f64, Sense)>,
 }
 
 impl Extractor {
@@ -52,6 +57,7 @@ impl Extractor {
         frame: &Frame,
         mesh: &mut MeshBuilder,
     ) -> Result<(), LeafError> {
+        self.cut = None;
         self.formula.load(formula);
         let count = self.formula.len();
         if count > MAX_LEAF_PRIMITIVES {
@@ -118,18 +124,48 @@ impl Extractor {
             *slot = leaf.edge_vertex(0, *ends, &mut self.vertices.snapper, mesh);
         }
         let [a, b, c, d] = ring;
+        let p = ring.map(|v| mesh.positions[v as usize]);
+        let part = |from: usize, to: usize| {
+            // How far the corner on an edge is from its first end.
+            let corners = corners[..count].iter();
+            let at = |e: &[usize; 2]| *e == [from, to] || *e == [to, from];
+            let found = corners.zip(p).find(|((ends, _), _)| at(ends));
+            let ends = [from, to].map(|v| leaf.simplex.vertices[v].position());
+            found.map_or(0.0, |(_, p)| {
+                p.distance(ends[0]) / ends[1].distance(ends[0])
+            })
+        };
+        let negative = leaf.planes.values[0].map(|v| vertex_sign(v) == Sign::Negative);
+        let others = |v: usize| (0..4).filter(move |w| *w != v);
         if count == 3 {
             mesh.push_oriented([a, b, c], primitive, label);
+            let alone = |v: &usize| others(*v).all(|w| negative[w] != negative[*v]);
+            if let Some(apex) = (0..4).find(alone) {
+                let cut: f64 = others(apex).map(|v| part(apex, v)).product();
+                let fraction = if negative[apex] { cut } else { 1.0 - cut };
+                self.cut = Some((fraction, label.sense));
+            }
             return;
         }
-        let p = ring.map(|v| mesh.positions[v as usize]);
-        if p[0].distance_squared(p[2]) <= p[1].distance_squared(p[3]) {
+        let first = if p[0].distance_squared(p[2]) <= p[1].distance_squared(p[3]) {
             mesh.push_oriented([a, b, c], primitive, label);
             mesh.push_oriented([a, c, d], primitive, label);
+            corners[0].0
         } else {
             mesh.push_oriented([b, c, d], primitive, label);
             mesh.push_oriented([b, d, a], primitive, label);
-        }
+            corners[1].0
+        };
+        // The diagonal joins the corners on u–w and v–x, with u and v on the negative side.
+        let [u, w] = if negative[first[0]] {
+            first
+        } else {
+            [first[1], first[0]]
+        };
+        let v = others(u).find(|v| negative[*v]).unwrap_or(u);
+        let x = others(w).find(|x| !negative[*x]).unwrap_or(w);
+        let fraction = wedge([part(u, w), part(u, x), part(v, w), part(v, x)]);
+        self.cut = Some((fraction, label.sense));
     }
 
     fn extract_polygon(&mut self, leaf: &Leaf<'_>, own: usize, mesh: &mut MeshBuilder) {

@@ -13,6 +13,7 @@ use crate::simplex::Simplex;
 use crate::topology::TopologyRule;
 use crate::trail::{Step, Trail};
 use crate::untangle::untangle;
+use crate::volume::VolumeGap;
 use crate::walk::{Frame, Sector, Visitor};
 use csg::{Domain, FormulaNode, LocalizeScratch, PrimitiveId, Ternary, localize};
 use rayon::prelude::*;
@@ -103,6 +104,7 @@ pub(crate) fn gather(
     report: &mut Report,
 ) -> Fragments {
     let mut meshes = Vec::with_capacity(harvests.len());
+    let mut volume = VolumeGap::default();
     for harvest in harvests.into_iter().flatten() {
         report.leaves += harvest.leaves;
         report.bisections += harvest.bisections;
@@ -113,8 +115,12 @@ pub(crate) fn gather(
         let room = MAX_SPOTS - report.uncertified.len();
         let listed = harvest.uncertified.into_iter().take(room);
         report.uncertified.extend(listed);
+        volume.add(harvest.mesh.volume());
+        volume.add(harvest.gap);
         meshes.push(harvest.mesh);
     }
+    // The topological rule drops surfaces that do not matter to it.
+    report.volume_interval = (!plan.topology).then(|| volume.of_domain(&plan.solid.domain));
     let domain: Domain = plan.solid.domain;
     let (mut fragments, tangles) = join(meshes, |unit| domain.to_model(unit));
     let primitives = plan.solid.primitives.iter();
@@ -130,6 +136,8 @@ pub(crate) struct Harvest {
     leaves: u64,
     bisections: u64,
     deepest_level: u8,
+    /// True volume less the mesh's in the leaves.
+    gap: VolumeGap,
     uncertified_leaves: u64,
     uncertified: Vec<Spot>,
 }
@@ -141,6 +149,7 @@ impl Harvest {
             leaves: 0,
             bisections: 0,
             deepest_level: 0,
+            gap: VolumeGap::default(),
             uncertified_leaves: 0,
             uncertified: Vec::new(),
         }
@@ -296,6 +305,9 @@ impl Visitor for Harvester<'_> {
                 z: p.z,
             });
         }
+        let tables = &self.plan.tables;
+        let cut = self.extractor.cut.take();
+        self.harvest.gap.add_leaf(simplex, frame, tables, cut);
         self.unflushed += 1;
         if self.unflushed == 1024 {
             self.flush();

@@ -70,6 +70,7 @@ mod topology;
 mod trail;
 mod untangle;
 mod vertices;
+mod volume;
 mod walk;
 
 pub use classify::Criterion;

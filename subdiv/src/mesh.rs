@@ -5,6 +5,7 @@ use crate::lattice::Point;
 use crate::leaf_formula::Label;
 use crate::simplex::Simplex;
 use crate::untangle::Tangles;
+use crate::volume::VolumeGap;
 use csg::{PrimitiveId, Sense};
 use glam::DVec3;
 use rustc_hash::FxHashMap;
@@ -201,6 +202,24 @@ impl MeshBuilder {
 
     fn on_border(&self, sum: [u32; 3], count: i128) -> bool {
         self.walls.iter().any(|wall| wall.contains(sum, count))
+    }
+
+    /// Bounds of this part's share of the solid's volume by the divergence theorem, in the
+    /// domain's own units.
+    pub(crate) fn volume(&self) -> VolumeGap {
+        let (mut sum, mut error) = (0.0, 0.0);
+        for triangle in &self.triangles {
+            let [a, b, c] = triangle.vertices.map(|v| self.positions[v as usize] - 0.5);
+            let (b, c) = (b - a, c - a);
+            sum += a.dot(b.cross(c));
+            // Some fifteen roundings, of positions also.
+            error += (1.0 + a.length()) * (b.length() * c.length() + b.length() + c.length());
+        }
+        let error = 16.0 * f64::EPSILON * error;
+        VolumeGap {
+            low: (sum - error) / 6.0,
+            high: (sum + error) / 6.0,
+        }
     }
 
     /// Drops what is only needed while the subtree is walked.

@@ -101,6 +101,8 @@ pub struct Report {
     pub proved_topology: Option<bool>,
     /// Extractions that were repeated since a leaf of the closure failed the rule.
     pub rounds: u64,
+    /// Proved bounds of the true solid's volume, in model units; `None` with the topological rule.
+    pub volume_interval: Option<[f64; 2]>,
     /// Number of certified leaves in whose neighbourhood only the mesh is proved to be near the
     /// true boundary, not the other way round.
     pub one_way_leaves: u64,
