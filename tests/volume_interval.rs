@@ -42,6 +42,7 @@ fn lens(r: f64, d: f64) -> f64 {
 }
 
 /// Solids, their volumes, and whether all their faces are planes.
+#[expect(clippy::too_many_lines, reason = "a list")]
 fn solids() -> Vec<(String, f64, bool)> {
     let mut all: Vec<(String, f64, bool)> = Vec::new();
     let mut add = |source: String, volume: f64| all.push((source, volume, false));
@@ -152,7 +153,7 @@ fn solids() -> Vec<(String, f64, bool)> {
         tube(0.5, 2.0) + ball(0.5),
     );
     // Dirichlet: |x|ⁿ + |y|ⁿ + |z|ⁿ ≤ 1 has the volume 8Γ(1 + 1/n)³/Γ(1 + 3/n).
-    let (quarter, three_quarters) = (0.906_402_477_055_477_1_f64, 0.919_062_526_848_883_2_f64);
+    let (quarter, three_quarters) = (0.906_402_477_055_477_f64, 0.919_062_526_848_883_2_f64);
     add(
         "polynomial(\"x^4+y^4+z^4-1\");".into(),
         8.0 * quarter.powi(3) / three_quarters,
