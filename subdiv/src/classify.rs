@@ -27,6 +27,19 @@ pub(crate) struct Class {
 }
 
 impl Class {
+    /// Of a polynomial that does not change; zero is inside.
+    pub(crate) fn of_constant(value: f64) -> Self {
+        Self {
+            value: if value > 0.0 {
+                Ternary::Out
+            } else {
+                Ternary::In
+            },
+            low: value,
+            high: value,
+        }
+    }
+
     /// `In` when p < 0 is proved in the whole simplex, `Out` when p > 0 is.
     pub(crate) fn value(&self) -> Ternary {
         self.value

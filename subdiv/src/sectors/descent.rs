@@ -1,7 +1,7 @@
 //! One sector's bintree, depth first.
 
 use super::{Collect, HYBRID, LevelCount, SectorNode, SectorRule};
-use crate::classify::classify;
+use crate::classify::{Class, classify};
 use crate::error::Error;
 use crate::extract::{Extractor, LeafError};
 use crate::halving::halve;
@@ -94,6 +94,7 @@ impl<'a> Descent<'a> {
                 root_rounding: 0.0,
                 model_error: 0.0,
                 largest: 0.0,
+                value: Ternary::Unknown,
             });
             frame.coefficients.extend_from_slice(coefficients);
         }
@@ -199,14 +200,7 @@ impl<'a> Descent<'a> {
             let degree = active.degree as usize;
             let class = if degree == 0 {
                 // A constant is decided, zero being inside.
-                crate::classify::Class {
-                    value: if coefficients[0] > 0.0 {
-                        Ternary::Out
-                    } else {
-                        Ternary::In
-                    },
-                    largest: coefficients[0].abs(),
-                }
+                Class::of_constant(coefficients[0])
             } else {
                 classify(
                     self.rule.criterion,
@@ -216,8 +210,8 @@ impl<'a> Descent<'a> {
                     active.error(),
                 )
             };
-            frame.active[at].largest = class.largest;
-            self.values.push(class.value);
+            frame.active[at].largest = class.largest();
+            self.values.push(class.value());
         }
         if self.values.iter().all(|v| *v == Ternary::Unknown) {
             return Ternary::Unknown;
