@@ -90,6 +90,10 @@ impl Target {
 
 impl Job {
     pub(crate) fn new(input: PathBuf, args: &ModelArgs) -> Result<Self, Failure> {
+        if args.level.is_some() && args.mesh == args::MeshKind::Surfaces {
+            let text = "--mesh surfaces needs a tolerance: leave out --level";
+            return Err(Failure::Usage(text.to_owned()));
+        }
         let memory = args.memory.map(|Bytes(bytes)| bytes).or_else(|| {
             let physical = memory::physical_bytes()?;
             Some(physical / 4 * 3)
