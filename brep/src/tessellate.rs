@@ -6,7 +6,8 @@
 //! 1. each B-Rep edge gets points on both of its surfaces, spaced evenly by the deviation of
 //!    their chords (`chains`), shared by the faces on both sides;
 //! 2. vertices inside curved faces go where the rest stays within the tolerance, and come, on
-//!    the surface, where it does not (`refine`);
+//!    the surface, where it does not (`decimate`, `split`), by what is measured once for each
+//!    vertex and each edge (`measure`);
 //! 3. planar faces are filled from their loops (`crate::triangulate`);
 //! 4. triangles that pass through others are looked for, and their faces done more finely
 //!    (`crossings`).
@@ -16,9 +17,13 @@
 
 mod chains;
 mod crossings;
+mod decimate;
+mod flips;
+mod measure;
 mod patchwork;
-mod refine;
 mod sheet;
+mod split;
+mod straighten;
 
 use crate::group::{FaceId, Groups};
 use crate::stitch::stitch;
@@ -50,6 +55,9 @@ pub struct Tessellated {
 
 /// Rounds of refinement where faces are nearer to each other than the tolerance.
 const ROUNDS: usize = 6;
+
+/// Flips after one change, at most: they come to an end by themselves, but for rounding.
+const FLIPS: usize = 64;
 
 /// Replaces the facets of a boundary by such as its surfaces need at this tolerance, in model
 /// units. `solid` is what the boundary was made from.
@@ -219,8 +227,8 @@ impl<'a> Run<'a> {
 
     /// Gives every B-Rep edge the points that it needs, and takes those that it does not.
     fn trace(&mut self, chains: &[Vec<u32>]) {
-        let mut old = Vec::new();
-        for ((edge, chain), name) in self.groups.edges.iter().zip(chains).zip(0..) {
+        let mut all_targets = Vec::with_capacity(chains.len());
+        for (edge, chain) in self.groups.edges.iter().zip(chains) {
             let faces = edge.faces.map(|FaceId(face)| face as usize);
             let sheets = faces.map(|face| self.sheets[face]);
             let primitives = faces.map(|face| self.groups.faces[face].primitive);
@@ -238,11 +246,15 @@ impl<'a> Run<'a> {
             let points: Vec<DVec3> = chain.iter().map(|&v| self.mesh.position(v)).collect();
             let tolerance = self.tolerances[faces[0]].min(self.tolerances[faces[1]]);
             let is_closed = chain.first() == chain.last();
-            let targets = if primitives[0] == primitives[1] {
+            all_targets.push(if primitives[0] == primitives[1] {
                 None
             } else {
                 chains::resample(sheets, &points, is_closed, tolerance, self.rounding)
-            };
+            });
+        }
+        self.measure_all();
+        let mut old = Vec::new();
+        for ((name, chain), targets) in (0..).zip(chains).zip(all_targets) {
             let inner = &chain[1..chain.len() - 1];
             let Some(targets) = targets else {
                 self.kept_edges += 1;
@@ -251,16 +263,17 @@ impl<'a> Run<'a> {
                 }
                 continue;
             };
+            let FaceId(left) = self.groups.edges[name as usize].faces[0];
             let mut at = (usize::MAX, NONE);
             for target in targets {
                 if at.0 != target.segment {
                     at = (
                         target.segment,
-                        self.crease_from(chain[target.segment], name, faces[0]),
+                        self.crease_from(chain[target.segment], name, left as usize),
                     );
                 }
                 if at.1 != NONE {
-                    at.1 = self.mesh.split(at.1, target.position, Role::Fixed);
+                    at.1 = self.split(at.1, target.position, Role::Fixed);
                 }
             }
             old.extend(inner);
@@ -268,6 +281,34 @@ impl<'a> Run<'a> {
             self.mesh.roles[chain[0] as usize] = Role::Fixed;
         }
         self.collapse_along_chains(old);
+    }
+
+    /// Decimates, refines, decimates again.
+    fn refine(&mut self) {
+        self.straighten();
+        self.decimate();
+        self.split_far_facets();
+        self.decimate();
+        self.flip_all(true);
+    }
+
+    /// Faces with facets that deviate too much, or stand across their surface.
+    fn troubled(&self) -> Vec<usize> {
+        let mut faces: Vec<usize> = (self.mesh.facets())
+            .filter(|&facet| {
+                let shape = self.shape_of(3 * facet);
+                shape.error > 1.0 + 1e-9 || shape.lean > measure::UPRIGHT
+            })
+            .map(|facet| self.face_of(3 * facet))
+            .collect();
+        faces.dedup();
+        faces
+    }
+
+    fn largest_deviation(&self) -> f64 {
+        let deviation =
+            |facet: u32| self.shape_of(3 * facet).error * self.tolerances[self.face_of(3 * facet)];
+        self.mesh.facets().map(deviation).fold(0.0, f64::max)
     }
 
     /// The half-edge that leaves a vertex along a B-Rep edge with this face to the left.

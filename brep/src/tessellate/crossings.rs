@@ -2,46 +2,163 @@
 
 use glam::DVec3;
 use robust::{Coord3D, orient3d};
+use std::ops::Range;
 
 /// Pairs of triangles, by number, that pass through each other: an edge of one goes through the
 /// inside of the other. Touching is no crossing. Decided exactly.
 ///
-/// Cost: O(n log n) and one comparison of boxes for each pair that overlaps along one axis.
+/// Cost: O(n log n) and one decision for each pair of boxes that overlap.
 pub(super) fn crossings(positions: &[DVec3], triangles: &[[u32; 3]]) -> Vec<[usize; 2]> {
-    let boxes: Vec<[DVec3; 2]> = (triangles.iter())
-        .map(|corners| {
-            let [a, b, c] = corners.map(|v| positions[v as usize]);
-            [a.min(b).min(c), a.max(b).max(c)]
-        })
-        .collect();
-    let axis = thinnest(&boxes);
-    let mut order: Vec<usize> = (0..triangles.len()).collect();
-    order.sort_by(|&s, &t| boxes[s][0][axis].total_cmp(&boxes[t][0][axis]));
+    let hierarchy = Hierarchy::of(positions, triangles);
     let mut found = Vec::new();
-    for (at, &one) in order.iter().enumerate() {
-        let [low, high] = boxes[one];
-        let following = order[at + 1..].iter();
-        for &other in following.take_while(|&&other| boxes[other][0][axis] <= high[axis]) {
-            let [other_low, other_high] = boxes[other];
-            let apart = other_low.cmpgt(high) | low.cmpgt(other_high);
-            if !apart.any() && cross(positions, triangles[one], triangles[other]) {
-                found.push([one.min(other), one.max(other)]);
-            }
+    let planes: Vec<Plane> = (triangles.iter())
+        .map(|corners| Plane::through(corners.map(|v| positions[v as usize])))
+        .collect();
+    let aside = |one: usize, other: usize| {
+        planes[one].is_aside(positions, triangles[one], triangles[other])
+    };
+    hierarchy.for_each_overlap(|one, other| {
+        if !aside(one, other)
+            && !aside(other, one)
+            && cross(positions, triangles[one], triangles[other])
+        {
+            found.push([one.min(other), one.max(other)]);
         }
-    }
+    });
     found.sort_unstable();
     found
 }
 
-/// The axis along which boxes are shortest in proportion to all of them.
-fn thinnest(boxes: &[[DVec3; 2]]) -> usize {
-    let mut whole = [DVec3::INFINITY, DVec3::NEG_INFINITY];
-    let mut sum = DVec3::ZERO;
-    for [low, high] in boxes {
-        whole = [whole[0].min(*low), whole[1].max(*high)];
-        sum += *high - *low;
+/// The plane of a triangle, to tell quickly what is on one side of it.
+struct Plane {
+    corner: DVec3,
+    normal: DVec3,
+    /// Times a distance: more than rounding can change a product with the normal.
+    rounding: f64,
+}
+
+impl Plane {
+    fn through([a, b, c]: [DVec3; 3]) -> Self {
+        let [p, q] = [b - a, c - a];
+        Self {
+            corner: a,
+            normal: p.cross(q),
+            // Three differences, two products and a sum for each term, and a lot to spare.
+            rounding: 32.0 * f64::EPSILON * p.length() * q.length(),
+        }
     }
-    (sum / (whole[1] - whole[0])).min_position()
+
+    /// Whether the corners of another triangle are all on one side, but for those in common. Then
+    /// nothing passes through. False if rounding leaves it open.
+    fn is_aside(&self, positions: &[DVec3], own: [u32; 3], other: [u32; 3]) -> bool {
+        let (mut above, mut below) = (true, true);
+        for vertex in other {
+            if own.contains(&vertex) {
+                continue;
+            }
+            let from = positions[vertex as usize] - self.corner;
+            let side = self.normal.dot(from);
+            let sure = side.abs() > self.rounding * from.length();
+            above &= sure && side > 0.0;
+            below &= sure && side < 0.0;
+        }
+        above || below
+    }
+}
+
+/// Triangles in a leaf of the hierarchy, at most.
+const LEAF: usize = 4;
+
+/// A box along the axes.
+#[derive(Clone, Copy)]
+struct Bounds([DVec3; 2]);
+
+impl Bounds {
+    fn around(self, Self([low, high]): Self) -> Self {
+        Self([self.0[0].min(low), self.0[1].max(high)])
+    }
+
+    fn overlaps(self, Self([low, high]): Self) -> bool {
+        !(self.0[0].cmpgt(high) | low.cmpgt(self.0[1])).any()
+    }
+}
+
+/// Boxes around halves of halves of all triangles: node n has the children 2n + 1 and 2n + 2,
+/// and all leaves are on one level.
+struct Hierarchy {
+    nodes: Vec<(Bounds, Range<usize>)>,
+    /// The triangles that the nodes' ranges mean, with their boxes.
+    order: Vec<(usize, Bounds)>,
+}
+
+impl Hierarchy {
+    fn of(positions: &[DVec3], triangles: &[[u32; 3]]) -> Self {
+        let mut order: Vec<(usize, Bounds)> = (triangles.iter())
+            .map(|corners| {
+                let [a, b, c] = corners.map(|v| positions[v as usize]);
+                Bounds([a.min(b).min(c), a.max(b).max(c)])
+            })
+            .enumerate()
+            .collect();
+        let mut nodes = Vec::new();
+        let mut level = Vec::from([Range {
+            start: 0,
+            end: order.len(),
+        }]);
+        loop {
+            let is_last = level.iter().all(|range| range.len() <= LEAF);
+            let mut below = Vec::with_capacity(2 * level.len());
+            for range in level {
+                let part = &mut order[range.clone()];
+                let none = Bounds([DVec3::INFINITY, DVec3::NEG_INFINITY]);
+                let bounds = part.iter().fold(none, |all, (_, one)| all.around(*one));
+                if !is_last {
+                    let axis = (bounds.0[1] - bounds.0[0]).max_position();
+                    let place = |(_, Bounds([low, high])): &(usize, Bounds)| low[axis] + high[axis];
+                    let half = part.len() / 2;
+                    part.select_nth_unstable_by(half, |one, other| {
+                        place(one)
+                            .total_cmp(&place(other))
+                            .then(one.0.cmp(&other.0))
+                    });
+                    let middle = range.start + half;
+                    below.extend([range.start..middle, middle..range.end]);
+                }
+                nodes.push((bounds, range));
+            }
+            if is_last {
+                return Self { nodes, order };
+            }
+            level = below;
+        }
+    }
+
+    /// Calls `visit` for each pair of triangles whose boxes overlap.
+    fn for_each_overlap(&self, mut visit: impl FnMut(usize, usize)) {
+        let mut open = vec![[0, 0]];
+        while let Some([m, n]) = open.pop() {
+            let [(one, of_one), (other, of_other)] = [m, n].map(|node| &self.nodes[node]);
+            if !one.overlaps(*other) {
+                continue;
+            }
+            let [[a, b], [c, d]] = [m, n].map(|node| [2 * node + 1, 2 * node + 2]);
+            if a < self.nodes.len() {
+                open.extend([[a, c], [a, d], [b, d]]);
+                if m != n {
+                    open.push([b, c]);
+                }
+                continue;
+            }
+            for (at, (s, low)) in (of_one.start..).zip(&self.order[of_one.clone()]) {
+                let from = if m == n { at + 1 } else { of_other.start };
+                for (t, high) in &self.order[from..of_other.end] {
+                    if low.overlaps(*high) {
+                        visit(*s, *t);
+                    }
+                }
+            }
+        }
+    }
 }
 
 fn cross(positions: &[DVec3], one: [u32; 3], other: [u32; 3]) -> bool {
@@ -86,6 +203,37 @@ mod tests {
         DVec3::new(2.0, 0.0, 0.0),
         DVec3::new(0.0, 2.0, 0.0),
     ];
+
+    /// Against all pairs: 300 triangles in a small cube, many crossings.
+    #[test]
+    fn no_pair_is_forgotten() {
+        let mut state = 1_u64;
+        let mut number = || {
+            state = state
+                .wrapping_mul(6_364_136_223_846_793_005)
+                .wrapping_add(1);
+            (state >> 40) as f64 / f64::from(1 << 24)
+        };
+        let mut positions = Vec::new();
+        for _ in 0..300 {
+            let near = DVec3::new(number(), number(), number());
+            for _ in 0..3 {
+                positions.push(near + 0.4 * DVec3::new(number(), number(), number()));
+            }
+        }
+        let triangles: Vec<[u32; 3]> = (0..300).map(|t| [3 * t, 3 * t + 1, 3 * t + 2]).collect();
+        let mut all = Vec::new();
+        for s in 0..300 {
+            for t in s + 1..300 {
+                if cross(&positions, triangles[s], triangles[t]) {
+                    all.push([s, t]);
+                }
+            }
+        }
+        assert!(all.len() > 100, "{}", all.len());
+        assert_eq!(crossings(&positions, &triangles), all);
+        assert_eq!(crossings(&positions, &[]), Vec::<[usize; 2]>::new());
+    }
 
     fn found(second: [DVec3; 3]) -> usize {
         let positions: Vec<DVec3> = FLAT.into_iter().chain(second).collect();

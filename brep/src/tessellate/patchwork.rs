@@ -5,6 +5,7 @@
 //! capped by a fan around a phantom vertex, so that the whole is closed and every operation is
 //! the same everywhere.
 
+use super::measure::Shape;
 use crate::group::{FaceId, Groups};
 use crate::topology::{Brep, HalfEdgeKey, VertexView};
 use glam::DVec3;
@@ -41,8 +42,14 @@ pub(super) struct Patchwork {
     pub(super) twin: Vec<u32>,
     /// By half-edge: the B-Rep edge on which it lies, or [`NONE`].
     pub(super) crease: Vec<u32>,
+    /// By half-edge: its surface's outward normal at its origin; zero for planes.
+    pub(super) normal: Vec<DVec3>,
+    /// By half-edge: how far it deviates from its surface, in units of the tolerance.
+    pub(super) chord: Vec<f64>,
     /// By facet: its B-Rep face.
     pub(super) face: Vec<u32>,
+    /// By facet.
+    pub(super) shape: Vec<Shape>,
 }
 
 pub(super) fn next(half_edge: u32) -> u32 {
@@ -77,7 +84,10 @@ impl Patchwork {
             origin: Vec::new(),
             twin: Vec::new(),
             crease: Vec::new(),
+            normal: Vec::new(),
+            chord: Vec::new(),
             face: Vec::new(),
+            shape: Vec::new(),
         };
         let mut number: SecondaryMap<HalfEdgeKey, u32> =
             SecondaryMap::with_capacity(brep.half_edges.capacity());
@@ -160,10 +170,13 @@ impl Patchwork {
     fn add_facet(&mut self, corners: [u32; 3], face: u32) -> u32 {
         let first = index(self.origin.len());
         self.face.push(face);
+        self.shape.push(Shape::default());
         for (half_edge, corner) in (first..).zip(corners) {
             self.origin.push(corner);
             self.twin.push(NONE);
             self.crease.push(NONE);
+            self.normal.push(DVec3::ZERO);
+            self.chord.push(0.0);
             self.outgoing[corner as usize] = half_edge;
         }
         first
@@ -222,6 +235,16 @@ impl Patchwork {
         // Vertices b and a may lose hn and tn as their outgoing half-edges, and gain these.
         let left = self.add_facet([v, b, c], self.face[h as usize / 3]);
         let right = self.add_facet([v, a, d], self.face[t as usize / 3]);
+        for (corner, of) in [
+            (left + 1, hn),
+            (left + 2, prev(h)),
+            (right + 1, tn),
+            (right + 2, prev(t)),
+        ] {
+            self.normal[corner as usize] = self.normal[of as usize];
+        }
+        self.chord[left as usize + 1] = self.chord[hn as usize];
+        self.chord[right as usize + 1] = self.chord[tn as usize];
         self.outgoing[c as usize] = prev(h);
         self.outgoing[d as usize] = prev(t);
         self.origin[hn as usize] = v;
@@ -259,18 +282,29 @@ impl Patchwork {
         let t = self.twin[h as usize];
         let [hn, hp, tn, tp] = [next(h), prev(h), next(t), prev(t)];
         let [a, b, c, d] = [h, t, hp, tp].map(|e| self.origin[e as usize]);
-        let old = [hn, hp, tn, tp].map(|e| (self.twin[e as usize], self.crease[e as usize]));
+        let [of_a, of_b, of_c, of_d] = [h, t, hp, tp].map(|e| self.normal[e as usize]);
+        let old = [hn, hp, tn, tp].map(|e| {
+            let e = e as usize;
+            (self.twin[e], self.crease[e], self.chord[e])
+        });
         let [bc, ca, ad, db] = old;
-        for (half_edge, origin, (twin, crease)) in
-            [(hn, c, ca), (hp, a, ad), (tn, d, db), (tp, b, bc)]
-        {
+        for (half_edge, origin, normal, (twin, crease, chord)) in [
+            (hn, c, of_c, ca),
+            (hp, a, of_a, ad),
+            (tn, d, of_d, db),
+            (tp, b, of_b, bc),
+        ] {
             self.origin[half_edge as usize] = origin;
+            self.normal[half_edge as usize] = normal;
             self.crease[half_edge as usize] = crease;
+            self.chord[half_edge as usize] = chord;
             self.outgoing[origin as usize] = half_edge;
             self.pair(half_edge, twin);
         }
         self.origin[h as usize] = d;
+        self.normal[h as usize] = of_d;
         self.origin[t as usize] = c;
+        self.normal[t as usize] = of_c;
     }
 
     /// Whether a → b can be shrunk to b: the ends have no common neighbours but the two opposite

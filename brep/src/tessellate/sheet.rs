@@ -149,6 +149,42 @@ impl<'a> Sheet<'a> {
         }
     }
 
+    /// The distance that [`Self::at`] gives, without the normal.
+    fn distance(&self, p: DVec3) -> f64 {
+        match *self {
+            Self::Plane { normal, offset } => normal.dot(p) - offset,
+            Self::Sphere { center, radius } => p.distance(center) - radius,
+            Self::Cylinder {
+                point,
+                axis,
+                radius,
+            } => (p - point).reject_from_normalized(axis).length() - radius,
+            Self::Cone {
+                apex,
+                axis,
+                cos,
+                sin,
+            } => {
+                let from_apex = p - apex;
+                let height = from_apex.dot(axis);
+                let out = (from_apex - height * axis).length();
+                out * cos - height.abs() * sin
+            }
+            Self::Torus {
+                center,
+                axis,
+                ring,
+                tube,
+            } => {
+                let from_center = p - center;
+                let height = from_center.dot(axis);
+                let out = (from_center - height * axis).length() - ring;
+                (out * out + height * height).sqrt() - tube
+            }
+            Self::Implicit { .. } => self.at(p).0,
+        }
+    }
+
     /// The point of the surface below or above `p`, along its normals.
     pub(super) fn project(&self, mut p: DVec3, rounding: f64) -> Option<DVec3> {
         for _ in 0..STEPS {
@@ -167,7 +203,7 @@ impl<'a> Sheet<'a> {
     /// Largest distance of a chord from the surface on which its ends lie. A quadric's deviation
     /// along a chord is a parabola, so that its middle says all; others are looked at thrice.
     pub(super) fn chord_error(&self, a: DVec3, b: DVec3) -> f64 {
-        let at = |t: f64| self.at(a.lerp(b, t)).0.abs();
+        let at = |t: f64| self.distance(a.lerp(b, t)).abs();
         match self {
             Self::Plane { .. } => 0.0,
             Self::Sphere { .. } | Self::Cylinder { .. } | Self::Cone { .. } => at(0.5),
