@@ -30,10 +30,13 @@
 //! ```
 
 mod curve;
+mod edges;
 mod error;
 mod euler;
 mod geometry;
 mod group;
+mod inspect;
+mod join;
 mod properties;
 mod quality;
 mod shells;
@@ -56,6 +59,8 @@ pub use curve::{Curve, Curves, EdgeCurve, Piece};
 pub use error::Error;
 pub use euler::EulerCharacteristic;
 pub use group::{Edge, Face, FaceId, Groups};
+pub use inspect::{DefectKind, Example, Inspection, Tally};
+pub use join::join_equal;
 pub use properties::Properties;
 pub use quality::Quality;
 pub use shells::{Shell, ShellId, ShellRole, Shells, Solid};

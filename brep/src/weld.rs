@@ -6,6 +6,8 @@
 //! triangles gets its own copy.
 
 use crate::Error;
+use crate::edges::{Faults, following, for_each_edge, previous};
+use crate::join::join_equal;
 use glam::DVec3;
 use std::collections::HashMap;
 use subdiv::{Fragments, Triangle, VertexKind};
@@ -22,31 +24,19 @@ pub fn weld(
     corners: &[[DVec3; 3]],
     mut label: impl FnMut(usize) -> Triangle,
 ) -> Result<Fragments, Error> {
-    let mut positions: Vec<DVec3> = Vec::new();
-    let mut known: HashMap<[u64; 3], u32> = HashMap::new();
-    let mut triangles: Vec<[u32; 3]> = Vec::new();
-    let mut kept = Vec::new();
-    for (at, corners) in corners.iter().enumerate() {
-        let mut ids = [0; 3];
-        for (id, corner) in ids.iter_mut().zip(corners) {
-            // Adding zero turns −0 into 0.
-            let key = (*corner + DVec3::ZERO).to_array().map(f64::to_bits);
-            let next = u32::try_from(positions.len());
-            let next = next.map_err(|_| Error::TooManyTriangles {
-                triangles: corners.len(),
-            })?;
-            *id = *known.entry(key).or_insert(next);
-            if *id == next {
-                positions.push(*corner);
-            }
-        }
-        let [a, b, c] = ids;
-        if a != b && b != c && c != a {
-            triangles.push(ids);
-            kept.push(at);
-        }
+    let positions = corners.as_flattened();
+    if u32::try_from(positions.len()).is_err() {
+        let triangles = corners.len();
+        return Err(Error::TooManyTriangles { triangles });
     }
-    let twins = pair(&positions, &triangles)?;
+    let joined = join_equal(positions, &[]);
+    let (triangles, _) = joined.as_chunks::<3>();
+    let is_whole = |[a, b, c]: &[u32; 3]| a != b && b != c && c != a;
+    let (kept, triangles): (Vec<usize>, Vec<[u32; 3]>) = (0..)
+        .zip(triangles)
+        .filter(|(_, ids)| is_whole(ids))
+        .unzip();
+    let twins = pair(positions, &triangles)?;
     let ids = split(triangles.len(), &twins);
     let mut fragments = Fragments::default();
     let mut place: HashMap<u32, u32> = HashMap::new();
@@ -69,61 +59,37 @@ pub fn weld(
 
 /// The twin of each half-edge; half-edge 3t + k goes from corner k of triangle t to the next one.
 fn pair(positions: &[DVec3], triangles: &[[u32; 3]]) -> Result<Vec<usize>, Error> {
-    let ends = |h: usize| {
-        let corners = triangles[h / 3];
-        (corners[h % 3], corners[(h + 1) % 3])
-    };
-    let key = |h: &usize| {
-        let (a, b) = ends(*h);
-        (a.min(b), a.max(b))
-    };
-    let mut order: Vec<usize> = (0..3 * triangles.len()).collect();
-    order.sort_by_key(|h| (key(h), *h));
-    let mut twins = vec![usize::MAX; order.len()];
-    let mut fault: Option<(usize, bool)> = None;
-    let mut total = 0;
-    for edge in order.chunk_by(|g, h| key(g) == key(h)) {
-        let (low, high) = key(&edge[0]);
-        let forward = edge.iter().filter(|h| ends(**h).0 == low).count();
+    let triangle = |t: usize| triangles[t];
+    let origin = |h: u32| triangles[h as usize / 3][h as usize % 3];
+    let mut twins = vec![usize::MAX; 3 * triangles.len()];
+    let mut faults = Faults::default();
+    let mut half_edges = Vec::new();
+    for_each_edge(positions.len(), triangles.len(), triangle, |edge| {
+        half_edges.clear();
+        half_edges.extend(edge.iter());
+        let ends = half_edges
+            .iter()
+            .map(|&h| (origin(h), origin(following(h))));
+        let (low, high) = ends
+            .clone()
+            .next()
+            .map_or((0, 0), |(u, v)| (u.min(v), u.max(v)));
+        let forward = ends.filter(|(from, _)| *from == low).count();
         if 2 * forward != edge.len() {
-            total += 1;
-            let found = (edge[0], edge.len() > 1);
-            fault = Some(fault.map_or(found, |first| first.min(found)));
-            continue;
+            faults.add(edge, &origin);
+            return;
         }
         let (a, b) = (positions[low as usize], positions[high as usize]);
-        for (g, h) in around(a, b, edge, |h| {
-            let apex = triangles[h / 3][(h + 2) % 3];
-            (positions[apex as usize], ends(h).0 == low)
+        for (g, h) in around(a, b, &half_edges, |h| {
+            let apex = origin(previous(h));
+            (positions[apex as usize], origin(h) == low)
         }) {
-            twins[g] = h;
-            twins[h] = g;
+            twins[g as usize] = h as usize;
+            twins[h as usize] = g as usize;
         }
-    }
-    let Some((half_edge, overused)) = fault else {
-        return Ok(twins);
-    };
-    let (from, to) = ends(half_edge);
-    let (triangle, from, to) = (
-        half_edge / 3,
-        positions[from as usize],
-        positions[to as usize],
-    );
-    Err(if overused {
-        Error::OverusedEdge {
-            triangle,
-            from,
-            to,
-            total,
-        }
-    } else {
-        Error::OpenEdge {
-            triangle,
-            from,
-            to,
-            total,
-        }
-    })
+    })?;
+    faults.into_result(positions, &origin)?;
+    Ok(twins)
 }
 
 /// Pairs the half-edges of one edge from `a` to `b` such that the solid between the two triangles
@@ -131,16 +97,16 @@ fn pair(positions: &[DVec3], triangles: &[[u32; 3]]) -> Result<Vec<usize>, Error
 fn around(
     a: DVec3,
     b: DVec3,
-    edge: &[usize],
-    apex: impl Fn(usize) -> (DVec3, bool),
-) -> Vec<(usize, usize)> {
+    edge: &[u32],
+    apex: impl Fn(u32) -> (DVec3, bool),
+) -> Vec<(u32, u32)> {
     if let [g, h] = *edge {
         return vec![(g, h)];
     }
     let axis = (b - a).normalize_or_zero();
     let x = axis.any_orthonormal_vector();
     let y = axis.cross(x);
-    let mut turned: Vec<(f64, bool, usize)> = edge
+    let mut turned: Vec<(f64, bool, u32)> = edge
         .iter()
         .map(|&h| {
             let (point, forward) = apex(h);
@@ -152,7 +118,7 @@ fn around(
     // Seen along the axis, a triangle that runs forward has the solid behind it, clockwise, so it
     // closes the wedge that a backward one opened. A stack matches them like parentheses, from a
     // place where nothing is open.
-    let weight = |t: &(f64, bool, usize)| if t.1 { -1 } else { 1 };
+    let weight = |t: &(f64, bool, u32)| if t.1 { -1 } else { 1 };
     let mut open = 0_i32;
     let mut lowest = (0, 0);
     for (at, one) in turned.iter().enumerate() {

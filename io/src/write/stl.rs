@@ -95,18 +95,12 @@ pub(super) fn single_precision(position: DVec3) -> Result<Vec3, Error> {
 
 /// What a reader gets who joins equal positions and drops triangles that vanish.
 fn weld(positions: &[Vec3], triangles: &[[u32; 3]]) -> Welding {
-    let bits = |vertex: u32| positions[vertex as usize].to_array().map(f32::to_bits);
-    let vertices = || (0_u32..).take(positions.len());
-    let mut order: Vec<u32> = vertices().collect();
-    order.sort_unstable_by_key(|&vertex| (bits(vertex), vertex));
-    let mut first: Vec<u32> = vertices().collect();
-    let mut merged = 0;
-    for pair in order.windows(2) {
-        if bits(pair[0]) == bits(pair[1]) {
-            first[pair[1] as usize] = first[pair[0] as usize];
-            merged += 1;
-        }
-    }
+    let positions: Vec<DVec3> = positions.iter().map(|p| p.as_dvec3()).collect();
+    let first = brep::join_equal(&positions, &[]);
+    let merged = (0_u32..)
+        .zip(&first)
+        .filter(|(v, first)| v != *first)
+        .count();
     if merged == 0 {
         return Welding::Exact;
     }
