@@ -21,7 +21,8 @@ Exit codes:
   0    done
   1    bad input, or a file that could not be read or written
   2    bad usage
-  3    done, but not certified to the tolerance (only with --strict)
+  3    done, but not certified to the tolerance (only with --strict);
+       the mesh is no closed, oriented manifold (only of `check`)
   4    a limit was reached: cells, memory, or the model's size
   130  interrupted";
 
@@ -56,6 +57,8 @@ pub(crate) enum Command {
     Info(InfoArgs),
     /// Print area, volume, centroid and inertia, of each solid and of all together
     Properties(PropertiesArgs),
+    /// Say whether a mesh file is a closed, oriented manifold, and where it is not
+    Check(CheckArgs),
     /// Repeat the programs and experiments of the thesis behind this program
     #[command(subcommand)]
     Thesis(ThesisCommand),
@@ -66,8 +69,12 @@ pub(crate) enum Command {
     },
     /// Print the manual page
     Man,
-    /// Print the JSON schema of the reports that `--report` writes
-    ReportSchema,
+    /// Print the JSON schema of what `--report` or `check --json` writes
+    ReportSchema {
+        /// Which of them
+        #[arg(value_name = "REPORT", default_value = "convert")]
+        of: SchemaOf,
+    },
 }
 
 /// How much is said, and how.
@@ -274,6 +281,51 @@ pub(crate) struct PropertiesArgs {
     /// Print JSON
     #[arg(long)]
     pub(crate) json: bool,
+}
+
+/// A mesh file to check.
+#[derive(Args, Debug)]
+pub(crate) struct CheckArgs {
+    /// The OBJ, GLB, STL, 3MF or PLY file; `-` is standard input
+    #[arg(value_name = "IN")]
+    pub(crate) input: PathBuf,
+    /// Print JSON
+    #[arg(long)]
+    pub(crate) json: bool,
+    /// Join vertices of exactly equal position first, whatever the file's vertex numbers say
+    #[arg(long)]
+    pub(crate) weld: bool,
+    /// The format of the input, whatever its content and extension
+    #[arg(long, value_name = "FORMAT")]
+    pub(crate) from: Option<MeshInputFormat>,
+    /// Most memory, such as 4G [default: three quarters of the machine's]
+    #[arg(long, value_name = "BYTES")]
+    pub(crate) memory: Option<Bytes>,
+}
+
+/// Reports with a schema.
+#[derive(ValueEnum, Clone, Copy, PartialEq, Eq, Debug)]
+pub(crate) enum SchemaOf {
+    /// What --report writes
+    Convert,
+    /// What check --json prints
+    Check,
+}
+
+/// Formats of meshes that can be checked and measured.
+#[derive(ValueEnum, Clone, Copy, PartialEq, Eq, Debug)]
+pub(crate) enum MeshInputFormat {
+    /// Wavefront OBJ
+    Obj,
+    /// Binary glTF
+    Glb,
+    /// STL, text or binary
+    Stl,
+    /// 3D Manufacturing Format
+    #[value(name = "3mf")]
+    Threemf,
+    /// PLY, text or binary
+    Ply,
 }
 
 /// Where the viewer of a picture stands.

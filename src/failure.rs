@@ -33,6 +33,8 @@ pub(crate) enum Failure {
     Limit(String),
     /// Not certified to the tolerance, with --strict.
     NotCertified(String),
+    /// A mesh that was to be checked has defects.
+    Defective(String),
     /// Ctrl-C.
     Cancelled,
     /// The reader of standard output went away, which is fine.
@@ -48,7 +50,7 @@ impl Failure {
             Self::BrokenPipe => 0,
             Self::Diagnostics { .. } | Self::BadInput(_) | Self::File { .. } | Self::Bug(_) => 1,
             Self::Usage(_) => 2,
-            Self::NotCertified(_) => 3,
+            Self::NotCertified(_) | Self::Defective(_) => 3,
             Self::Limit(_) => 4,
             Self::Cancelled => INTERRUPTED,
         }
@@ -108,7 +110,8 @@ impl fmt::Display for Failure {
             Self::BadInput(text)
             | Self::Usage(text)
             | Self::Limit(text)
-            | Self::NotCertified(text) => f.write_str(text),
+            | Self::NotCertified(text)
+            | Self::Defective(text) => f.write_str(text),
             Self::File {
                 action,
                 path,

@@ -4,6 +4,7 @@
 //! said goes through [`talk`], every failure through [`failure`].
 
 mod args;
+mod check;
 mod convert;
 mod excerpt;
 mod failure;
@@ -11,6 +12,7 @@ mod info;
 mod input;
 mod loose;
 mod memory;
+mod mesh_file;
 mod output;
 mod pipeline;
 mod progress;
@@ -24,7 +26,7 @@ mod thesis;
 mod values;
 mod view;
 
-use args::{Cli, Command};
+use args::{Cli, Command, SchemaOf};
 use clap::Parser as _;
 use failure::Failure;
 use report::Report;
@@ -64,11 +66,16 @@ fn dispatch(cli: Cli, talk: Talk) -> Result<(), Failure> {
         Some(Command::Thesis(command)) => thesis::run(command, talk),
         Some(Command::Completions { shell }) => shell::completions(shell),
         Some(Command::Man) => shell::manual(),
-        Some(Command::ReportSchema) => report_schema(),
+        Some(Command::Check(args)) => check::run(args),
+        Some(Command::ReportSchema { of }) => report_schema(of),
     }
 }
 
-fn report_schema() -> Result<(), Failure> {
-    let schema = Report::schema().map_err(|error| Failure::Bug(error.to_string()))?;
+fn report_schema(of: SchemaOf) -> Result<(), Failure> {
+    let schema = match of {
+        SchemaOf::Convert => Report::schema(),
+        SchemaOf::Check => check::schema(),
+    };
+    let schema = schema.map_err(|error| Failure::Bug(error.to_string()))?;
     output::write_bytes(&Target::Stdout, schema.as_bytes())
 }

@@ -1,10 +1,21 @@
 //! What the operating system tells about memory, where it does (Linux).
 
+use crate::values::Bytes;
 use std::fs;
 
 /// The most memory that this process has held at any time, in bytes.
 pub(crate) fn peak_bytes() -> Option<u64> {
     field(&fs::read_to_string("/proc/self/status").ok()?, "VmHWM:")
+}
+
+/// Memory allowed where the machine does not tell how much it has.
+const FALLBACK: u64 = 4 << 30;
+
+/// What may be used, in bytes: what was asked for, or three quarters of the machine's.
+pub(crate) fn allowed_bytes(asked: Option<Bytes>) -> u64 {
+    let asked = asked.map(|Bytes(bytes)| bytes);
+    let most = asked.or_else(|| Some(physical_bytes()? / 4 * 3));
+    most.unwrap_or(FALLBACK)
 }
 
 /// The memory of the machine, in bytes.

@@ -5,7 +5,7 @@ use crate::failure::Failure;
 use crate::input::Input;
 use crate::memory;
 use crate::report::SettingsReport;
-use crate::values::{Bytes, Tolerance};
+use crate::values::Tolerance;
 use csg::Aabb;
 use glam::DVec3;
 use io::read::ReadOptions;
@@ -66,9 +66,6 @@ pub(crate) struct Conversion {
     pub(crate) strict: bool,
 }
 
-/// Memory allowed where the machine does not tell how much it has.
-const FALLBACK_MEMORY: u64 = 4 << 30;
-
 impl Target {
     /// `-` is standard output.
     pub(crate) fn new(path: PathBuf) -> Self {
@@ -94,10 +91,6 @@ impl Job {
             let text = "--mesh surfaces needs a tolerance: leave out --level";
             return Err(Failure::Usage(text.to_owned()));
         }
-        let memory = args.memory.map(|Bytes(bytes)| bytes).or_else(|| {
-            let physical = memory::physical_bytes()?;
-            Some(physical / 4 * 3)
-        });
         Ok(Self {
             input: Input::new(input),
             read: ReadOptions {
@@ -120,7 +113,7 @@ impl Job {
             mesh: args.mesh,
             threads: args.threads.map(usize::from),
             max_cells: args.max_cells.get(),
-            max_memory_bytes: memory.unwrap_or(FALLBACK_MEMORY),
+            max_memory_bytes: memory::allowed_bytes(args.memory),
         })
     }
 

@@ -125,8 +125,8 @@ impl Inspection {
         self.components = pieces.components();
         if self.is_sound() {
             // V − E + F = 2 (components − handles), with a vertex for each fan.
-            let characteristic = fans.count + kept.len() - edge_count;
-            self.genus = Some(self.components - characteristic / 2);
+            let cells = fans.count + kept.len();
+            self.genus = Some((2 * self.components + edge_count - cells) / 2);
         }
         Ok(())
     }

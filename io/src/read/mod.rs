@@ -2,7 +2,8 @@
 //!
 //! [`decode`](decode::decode) turns bytes into text, [`format::sniff`] tells what the text is, and
 //! one module per format reads it. Nothing here opens files, prints or recurses on the depth of
-//! its input, and whatever is wrong is told with its place in the file.
+//! its input, and whatever is wrong is told with its place in the file. [`mesh`] reads boundaries,
+//! of any program, to check and measure them.
 
 #![cfg_attr(not(test), deny(clippy::indexing_slicing))]
 
@@ -11,6 +12,7 @@ pub mod decode;
 mod diagnostic;
 mod expression;
 pub mod format;
+pub mod mesh;
 pub mod scad_csg;
 
 pub use diagnostic::{Diagnostic, Diagnostics};

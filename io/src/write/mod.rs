@@ -24,7 +24,7 @@ pub use unit::Unit;
 #[cfg(test)]
 #[allow(dead_code, reason = "each crate's tests need other samples")]
 #[path = "../../../brep/src/samples.rs"]
-mod samples;
+pub(crate) mod samples;
 
 /// Name and version, as files say who made them.
 const GENERATOR: &str = concat!("csg2brep ", env!("CARGO_PKG_VERSION"));
