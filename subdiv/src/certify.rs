@@ -17,13 +17,14 @@
 //! All of them include the error e of the coefficients.
 
 use crate::bernstein::{count, for_each_index, index};
+use crate::hessian::{Hessian, norm};
 use crate::margin::growth;
 use crate::remainder::quadric_remainder;
 use crate::rounding::UNIT_ROUNDOFF;
 use crate::simplex::Simplex;
 use crate::snap::RESIDUAL;
 use crate::walk::Active;
-use csg::{Primitive, Ternary};
+use csg::Ternary;
 use glam::{DMat3, DVec3};
 
 /// Index tables for one degree.
@@ -211,14 +212,14 @@ impl Sheet {
     /// `control`: work space. `None` when even without other primitives p = 0 is not within the
     /// tolerance of the mesh for certain.
     ///
-    /// `tables`: those of degrees 1, 2, …; `bend`: H if it is known.
+    /// `tables`: those of degrees 1, 2, …; `hessian`: that of a quadric.
     #[must_use]
     pub(crate) fn new(
         tables: &[DegreeTable],
         active: &Active,
         coefficients: &[f64],
         place: &Place,
-        bend: Option<f64>,
+        hessian: Option<&Hessian>,
         control: &mut Vec<DVec3>,
     ) -> Option<Self> {
         let n = active.degree as usize;
@@ -284,7 +285,7 @@ impl Sheet {
             return None;
         }
         sheet.steepness = steepness - slope_error;
-        sheet.bend = bend.map_or_else(
+        sheet.bend = hessian.map_or_else(
             || {
                 control.clear();
                 control.extend(table.control_gradients(coefficients, &place.gradients));
@@ -293,7 +294,7 @@ impl Sheet {
                 let error = 2.0 * place.rate * (n - 1) as f64 * slope_error;
                 [mean + error, spread + error]
             },
-            |bend| [bend, 0.0],
+            |hessian| [hessian.norm, 0.0],
         );
         Some(sheet)
     }
@@ -317,10 +318,9 @@ impl Sheet {
         }
     }
 
-    /// φ in radians, a right angle or less.
-    pub(crate) fn spread_rad(&self, around: &Around) -> f64 {
-        let sine = (self.spread + around.radius * self.bend(around)) / self.slope;
-        sine.min(1.0).asin()
+    /// sin φ; 1 where φ is a right angle or more.
+    pub(crate) fn spread_sine(&self, around: &Around) -> f64 {
+        ((self.spread + around.radius * self.bend(around)) / self.slope).min(1.0)
     }
 
     /// The least distance in which the boundary may be reached, whatever is around.
@@ -380,37 +380,9 @@ fn bend_of(table: &DegreeTable, control: &[DVec3], gradients: &BarycentricGradie
     [norm(&mean) * (1.0 + 1e-14), spread * (1.0 + 1e-14)]
 }
 
-/// Bound on |M x|/|x| for symmetric M: the smaller of two matrix norms.
-fn norm(m: &DMat3) -> f64 {
-    let columns = [m.x_axis, m.y_axis, m.z_axis];
-    let by_columns = columns.map(|c| c.abs().element_sum());
-    let squares: f64 = columns.iter().map(|c| c.length_squared()).sum();
-    by_columns
-        .into_iter()
-        .fold(0.0, f64::max)
-        .min(squares.sqrt())
-}
-
-/// Bound on the second derivatives of a quadric, in any direction; exact for balls.
-#[must_use]
-pub(crate) fn quadric_bend(primitive: &Primitive) -> Option<f64> {
-    let polynomial = &primitive.polynomial;
-    if polynomial.degree() != 2 {
-        return None;
-    }
-    let c = polynomial.coefficients();
-    let hessian = DMat3::from_cols(
-        DVec3::new(2.0 * c[0], c[1], c[2]),
-        DVec3::new(c[1], 2.0 * c[4], c[5]),
-        DVec3::new(c[2], c[5], 2.0 * c[7]),
-    );
-    // Six entries are off by up to twice the coefficients' error.
-    let error = 12.0 * primitive.coefficient_error;
-    Some(norm(&hessian) * (1.0 + 1e-14) + error)
-}
-
-/// Whether a + λb is proved to have one sign within three radii of the simplex for a
-/// suitable λ > 0, so that there a and b are never both positive or never both negative.
+/// Whether a + λb is proved to have one sign around the simplex for a suitable λ > 0, so that
+/// there a and b are never both positive or never both negative: within one radius for the way
+/// from the mesh, within two for both ways.
 ///
 /// `senses`: 1, or −1 for the negative polynomial. Polynomials of one degree are compared
 /// coefficient by coefficient, which proves even the sheets of a very thin shell apart.
@@ -419,30 +391,49 @@ pub(crate) fn apart(
     [a, b]: [&Sheet; 2],
     [p, q]: [&[f64]; 2],
     senses: [f64; 2],
-    tables: &[DegreeTable],
+    (tables, hessians): (&[DegreeTable], [Option<&Hessian>; 2]),
     around: &Around,
+    gradients: &BarycentricGradients,
 ) -> bool {
     let lambda = a.slope / b.slope * senses[1] * senses[0];
-    let overshoot = 3.0 * around.radius * around.rate;
+    let reach = if around.both_ways { 2.0 } else { 1.0 } * around.radius;
+    let overshoot = reach * around.rate;
     let error = a.error + lambda.abs() * b.error;
-    let sum = |p: &[f64], q: &[f64]| {
-        let sums = p.iter().zip(q).map(|(p, q)| p + lambda * q);
-        sums.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), d| {
+    let range = |values: &mut dyn Iterator<Item = f64>| {
+        values.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), d| {
             (low.min(d), high.max(d))
         })
     };
+    let sum = |p: &[f64], q: &[f64]| range(&mut p.iter().zip(q).map(|(p, q)| p + lambda * q));
     if p.len() == q.len() {
         let (low, high) = sum(p, q);
         let growth = growth(a.degree, overshoot);
-        let half = 0.5 * (high - low) * growth + 2.0 * error * growth;
-        return (0.5 * (high + low)).abs() > half;
+        let error = 2.0 * error * growth;
+        let half = 0.5 * (high - low) * growth + error;
+        if (0.5 * (high + low)).abs() > half {
+            return true;
+        }
+        let ([Some(of_a), Some(of_b)], true) = (hessians, low > error || high < -error) else {
+            return false;
+        };
+        let mut sum = [0.0; 10];
+        for ((sum, p), q) in sum.iter_mut().zip(p).zip(q) {
+            *sum = p + lambda * q;
+        }
+        let hessian = of_a.plus(lambda, of_b);
+        let range = if low > 0.0 {
+            (low - error, high)
+        } else {
+            (low, high + error)
+        };
+        return hessian.clearance(&sum, range, gradients) > reach;
     }
     let rest = |s: &Sheet, c: &[f64]| {
         let remainder = tables[s.degree - 1].remainder(c, &s.values);
         (remainder + 2.0 * s.error) * growth(s.degree, overshoot)
     };
     let slope = (a.normal * a.slope + b.normal * (b.slope * lambda)).length();
-    let slack = rest(a, p) + lambda.abs() * rest(b, q) + 3.0 * around.radius * slope;
+    let slack = rest(a, p) + lambda.abs() * rest(b, q) + reach * slope;
     let (low, high) = sum(&a.values, &b.values);
     low > slack || high < -slack
 }

@@ -2,10 +2,11 @@
 
 use crate::balance::close;
 use crate::blossom::RootCoefficients;
-use crate::certify::{DegreeTable, quadric_bend};
+use crate::certify::DegreeTable;
 use crate::error::Error;
 use crate::fragments::Fragments;
 use crate::harvest::{Cut, extract, gather};
+use crate::hessian::Hessian;
 use crate::lattice::MAX_LEVEL;
 use crate::limits::Budget;
 use crate::margin::Margin;
@@ -75,8 +76,8 @@ pub(crate) struct Plan<'a> {
     pub(crate) labelled: bool,
     /// Of each primitive, for the topological rule.
     pub(crate) families: Vec<Option<Kin>>,
-    /// Bound on the second derivatives of each quadric.
-    pub(crate) bends: Vec<Option<f64>>,
+    /// Second derivatives of each quadric.
+    pub(crate) hessians: Vec<Option<Hessian>>,
     /// Three tolerances, with the metric rule.
     pub(crate) margin: Option<Arc<Margin>>,
     pub(crate) max_level: u8,
@@ -105,12 +106,13 @@ impl<'a> Plan<'a> {
         let roots: Vec<_> = solid.primitives.iter().map(RootCoefficients::new).collect();
         let degrees = roots.iter().map(|r| r.degree).max().unwrap_or(1);
         let tables: Vec<_> = (1..=degrees.max(1)).map(DegreeTable::new).collect();
+        let hessians: Vec<_> = solid.primitives.iter().map(Hessian::of).collect();
         Ok(Self {
             solid,
             settings,
             roots,
-            bends: solid.primitives.iter().map(quadric_bend).collect(),
-            margin: tolerance.map(|t| Arc::new(Margin::new(3.0 * t, &tables))),
+            margin: tolerance.map(|t| Arc::new(Margin::new(3.0 * t, &tables, &hessians))),
+            hessians,
             tables,
             tolerance,
             topology: matches!(settings.rule, Rule::Topology { .. }),

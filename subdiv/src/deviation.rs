@@ -46,6 +46,8 @@ pub(crate) struct DeviationRule {
     sheets: ArrayVec<Sheet, CROWD>,
     /// Parallel to `sheets`.
     active: ArrayVec<Active, CROWD>,
+    /// What may vanish in the neighbourhood at hand.
+    near: Vec<Active>,
     control: Vec<DVec3>,
 }
 
@@ -75,8 +77,25 @@ impl DeviationRule {
             rate: margin.rate(simplex.level),
             tolerance: margin.radius / 3.0 * (1.0 - ROUNDING_SHARE),
         };
+        let mut near = std::mem::take(&mut self.near);
+        let result = self.test_near(plan, margin, simplex, frame, (&place, &mut near));
+        self.near = near;
+        result
+    }
+
+    /// `near`: work space.
+    fn test_near(
+        &mut self,
+        plan: &Plan<'_>,
+        margin: &Margin,
+        simplex: &Simplex,
+        frame: &Frame,
+        (place, near): (&Place, &mut Vec<Active>),
+    ) -> Result<Proved, Reason> {
         let crossing = frame.active.iter().filter(|a| a.value == Ternary::Unknown);
-        self.gather(plan, frame, crossing, &place)?;
+        near.clear();
+        near.extend(crossing);
+        self.gather(plan, frame, near, place)?;
         let least = self.sheets.iter().map(Sheet::least_reach);
         let least = least.fold(0.0, f64::max);
         let mut gathered = self.active.len();
@@ -97,17 +116,20 @@ impl DeviationRule {
                 both_ways,
                 rate: place.rate,
             };
-            let is_near = |a: &&Active| is_near(a, simplex, frame, margin, &around);
-            let near = || frame.active.iter().filter(is_near);
+            let around_it = frame.active.iter();
+            let around_it =
+                around_it.filter(|a| is_near(a, simplex, frame, margin, place, &around));
+            near.clear();
+            near.extend(around_it);
             // Sets of one size are the same: a smaller radius has no more around it.
-            let result = if near().count() == gathered {
+            let result = if near.len() == gathered {
                 Ok(())
             } else {
-                let done = self.gather(plan, frame, near(), &place);
+                let done = self.gather(plan, frame, near, place);
                 gathered = done.map_or(usize::MAX, |()| self.active.len());
                 done
             };
-            let result = result.and_then(|()| self.try_around(plan, frame, &around));
+            let result = result.and_then(|()| self.try_around(plan, frame, (place, &around)));
             match result {
                 Ok(distance) => {
                     return Ok(Proved {
@@ -122,25 +144,23 @@ impl DeviationRule {
     }
 
     /// Looks at each of these primitives on its own.
-    fn gather<'f>(
+    fn gather(
         &mut self,
         plan: &Plan<'_>,
         frame: &Frame,
-        active: impl Iterator<Item = &'f Active>,
+        active: &[Active],
         place: &Place,
     ) -> Result<(), Reason> {
         self.sheets.clear();
         self.active.clear();
-        for active in active {
-            if self.active.try_push(*active).is_err() {
-                return Err(Reason::Crowded);
-            }
-        }
+        self.active
+            .try_extend_from_slice(active)
+            .map_err(|_| Reason::Crowded)?;
         for active in &self.active {
             let coefficients = frame.coefficients_of(active);
-            let bend = plan.bends[active.primitive as usize];
+            let hessian = plan.hessians[active.primitive as usize].as_ref();
             let control = &mut self.control;
-            let sheet = Sheet::new(&plan.tables, active, coefficients, place, bend, control);
+            let sheet = Sheet::new(&plan.tables, active, coefficients, place, hessian, control);
             self.sheets.push(sheet.ok_or(Reason::Singular)?);
         }
         if self.sheets.len() > 1 {
@@ -157,7 +177,7 @@ impl DeviationRule {
         &mut self,
         plan: &Plan<'_>,
         frame: &Frame,
-        around: &Around,
+        (place, around): (&Place, &Around),
     ) -> Result<f64, Reason> {
         let mut alone = self.sheets.iter().map(|s| s.reach(1.0, around));
         let alone = alone.try_fold(0.0f64, |m, t| Some(m.max(t?)));
@@ -167,7 +187,7 @@ impl DeviationRule {
         }
         // Planes are their own interpolants: their arrangement is exact.
         let exact = self.sheets.iter().all(|s| s.degree == 1);
-        self.try_several(plan, frame, around)
+        self.try_several(plan, frame, (place, around))
             .or_else(|reason| exact.then_some(alone).ok_or(reason))
     }
 
@@ -175,7 +195,7 @@ impl DeviationRule {
         &mut self,
         plan: &Plan<'_>,
         frame: &Frame,
-        around: &Around,
+        (place, around): (&Place, &Around),
     ) -> Result<f64, Reason> {
         let mut senses = [1.0; CROWD];
         let mut two_sided = ArrayVec::<usize, MOST_TWO_SIDED>::new();
@@ -190,7 +210,7 @@ impl DeviationRule {
             for (bit, &at) in two_sided.iter().enumerate() {
                 senses[at] = if flips >> bit & 1 == 1 { -1.0 } else { 1.0 };
             }
-            let cosine = self.cosine(plan, frame, &senses, around)?;
+            let cosine = self.cosine(plan, frame, &senses, (place, around))?;
             for sheet in &self.sheets {
                 let cosine = (cosine * weight(sheet)).min(1.0);
                 let reach = sheet.reach(cosine, around);
@@ -206,7 +226,7 @@ impl DeviationRule {
         plan: &Plan<'_>,
         frame: &Frame,
         senses: &[f64; CROWD],
-        around: &Around,
+        (place, around): (&Place, &Around),
     ) -> Result<f64, Reason> {
         let all: Set = (1 << self.sheets.len()) - 1;
         // Most often all have a common direction.
@@ -219,12 +239,15 @@ impl DeviationRule {
                 let both = [i, j];
                 let sheets = both.map(|at| &self.sheets[at]);
                 let coefficients = both.map(|at| frame.coefficients_of(&self.active[at]));
+                let hessians =
+                    both.map(|at| plan.hessians[self.active[at].primitive as usize].as_ref());
                 if apart(
                     sheets,
                     coefficients,
                     both.map(|at| senses[at]),
-                    &plan.tables,
+                    (&plan.tables, hessians),
                     around,
+                    &place.gradients,
                 ) {
                     apart_from[i] |= 1 << j;
                     apart_from[j] |= 1 << i;
@@ -259,8 +282,9 @@ impl DeviationRule {
         let cosines = normals.iter().zip(&chosen).map(|(normal, sheet)| {
             let weight = weight(sheet);
             // The direction and the normals have unit length but for a few roundings.
-            let cosine = (normal.dot(direction) * weight).clamp(-1.0, 1.0);
-            ((cosine.acos() + sheet.spread_rad(around)).cos() - 1e-12) / weight
+            let cosine = (normal.dot(direction) * weight).clamp(0.0, 1.0);
+            let (sine, spread) = ((1.0 - cosine * cosine).sqrt(), sheet.spread_sine(around));
+            (cosine * (1.0 - spread * spread).sqrt() - sine * spread - 1e-12) / weight
         });
         let least = cosines.fold(f64::INFINITY, f64::min);
         (least > 0.0).then_some(least)
@@ -274,21 +298,22 @@ fn is_near(
     simplex: &Simplex,
     frame: &Frame,
     margin: &Margin,
+    place: &Place,
     around: &Around,
 ) -> bool {
     if active.value == Ternary::Unknown || around.both_ways {
         return true;
     }
+    if active.clearance >= around.radius {
+        return false;
+    }
+    if active.degree <= 2 {
+        return true;
+    }
     let (degree, coefficients) = (active.degree as usize, frame.coefficients_of(active));
     let class = classify(Criterion::Bezier, simplex.kind(), degree, coefficients, 0.0);
-    !margin.keeps_sign(
-        around.radius,
-        simplex,
-        degree,
-        coefficients,
-        &class,
-        active.error(),
-    )
+    let place = (place.rate, &place.gradients);
+    !margin.keeps_sign(around.radius, place, active, coefficients, &class)
 }
 
 fn weight(sheet: &Sheet) -> f64 {

@@ -45,6 +45,7 @@ mod extract;
 mod fragments;
 mod halving;
 mod harvest;
+mod hessian;
 mod kernel;
 mod lattice;
 mod leaf;

@@ -11,7 +11,9 @@
 
 use crate::certify::{BarycentricGradients, DegreeTable, barycentric_gradients, gradient};
 use crate::classify::Class;
+use crate::hessian::Hessian;
 use crate::simplex::Simplex;
+use crate::walk::Active;
 
 /// N, the largest rate at which negative barycentric coordinates grow with the distance.
 #[must_use]
@@ -31,17 +33,19 @@ pub(crate) fn growth(degree: usize, overshoot: f64) -> f64 {
 /// How far around its simplex a sign must hold.
 #[derive(Debug)]
 pub(crate) struct Margin {
-    /// The distance, if no other is given.
+    /// The distance.
     pub(crate) radius: f64,
     /// N for the simplices of each level.
     rates: Vec<f64>,
+    /// Of each primitive.
+    hessians: Vec<Option<Hessian>>,
     tables: Vec<DegreeTable>,
 }
 
 impl Margin {
-    /// A margin of `radius`; `tables`: those of degrees 1, 2, …
+    /// A margin of `radius`; `tables`: those of degrees 1, 2, …; `hessians`: of each primitive.
     #[must_use]
-    pub(crate) fn new(radius: f64, tables: &[DegreeTable]) -> Self {
+    pub(crate) fn new(radius: f64, tables: &[DegreeTable], hessians: &[Option<Hessian>]) -> Self {
         // Simplices of one level are congruent.
         let [mut simplex, ..] = Simplex::roots();
         let mut rates = Vec::new();
@@ -52,6 +56,7 @@ impl Margin {
         Self {
             radius,
             rates,
+            hessians: hessians.to_vec(),
             tables: tables.to_vec(),
         }
     }
@@ -62,47 +67,82 @@ impl Margin {
         self.rates[usize::from(level)]
     }
 
-    /// Whether a polynomial that has one sign in the simplex is proved to keep it within `radius`
-    /// of it.
+    /// How far around a simplex an active polynomial that has one sign there is proved to keep it.
+    /// For degrees above 2 it is either the margin's radius or nothing, see [`Self::keeps_sign`].
+    ///
+    /// `place`: N there, and the gradients of the simplex' barycentric coordinates.
+    #[must_use]
+    pub(crate) fn clearance(
+        &self,
+        place: (f64, &BarycentricGradients),
+        active: &Active,
+        coefficients: &[f64],
+        class: &Class,
+    ) -> f64 {
+        let (rate, gradients) = place;
+        let degree = active.degree as usize;
+        let error = || 2.0 * active.error() * growth(degree, self.radius * rate);
+        if degree == 1 {
+            let (_, slope) = gradient(&self.tables[0], coefficients, gradients);
+            let nearest = class.low.max(-class.high) - error();
+            return nearest / slope.length() * (1.0 - 1e-14);
+        }
+        if let Some(hessian) = &self.hessians[active.primitive as usize] {
+            let error = error();
+            let range = (class.low - error, class.high + error);
+            return hessian.clearance(coefficients, range, gradients);
+        }
+        if self.keeps_sign(self.radius, place, active, coefficients, class) {
+            self.radius
+        } else {
+            0.0
+        }
+    }
+
+    /// Whether an active polynomial of degree above 2 that has one sign in a simplex is proved to
+    /// keep it within `radius` of it.
     #[must_use]
     pub(crate) fn keeps_sign(
         &self,
         radius: f64,
-        simplex: &Simplex,
-        degree: usize,
+        (rate, gradients): (f64, &BarycentricGradients),
+        active: &Active,
         coefficients: &[f64],
         class: &Class,
-        error: f64,
     ) -> bool {
-        let growth = growth(degree, radius * self.rate(simplex.level));
+        let degree = active.degree as usize;
+        let growth = growth(degree, radius * rate);
+        let error = 2.0 * active.error() * growth;
         let (middle, half) = (
             0.5 * (class.high + class.low),
             0.5 * (class.high - class.low),
         );
-        let error = 2.0 * error * growth;
         if middle.abs() > half * growth + error {
             return true;
         }
         // More sharply: the affine part goes on as it is, only the rest may grow.
         let table = &self.tables[degree - 1];
-        let (values, slope) = gradient(table, coefficients, &barycentric_gradients(simplex));
+        let (values, slope) = gradient(table, coefficients, gradients);
         let nearest = values.iter().map(|v| v.abs()).fold(f64::INFINITY, f64::min);
-        let rest = table.remainder(coefficients, &values);
-        nearest > radius * slope.length() + rest * growth + error
+        let left = nearest - radius * slope.length() - error;
+        left > 0.0 && left > table.remainder(coefficients, &values) * growth
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::bernstein::{count, evaluate};
+    use crate::bernstein::count;
+    use crate::blossom::RootCoefficients;
     use crate::classify::{Criterion, classify};
+    use crate::halving::halve;
     use csg::Ternary;
     use glam::DVec3;
     use proptest::prelude::*;
 
     proptest! {
-        /// Points at most the radius away from a random point of a random simplex.
+        /// Points at most the radius away from a random point of a random simplex; the oracle is
+        /// the power form.
         #[test]
         fn signs_are_kept_within_the_radius(
             degree in 1usize..5, turns in proptest::collection::vec(any::<bool>(), 0..12),
@@ -110,27 +150,41 @@ mod tests {
             radius in 0.001..0.3f64, b in proptest::array::uniform4(0.0..1.0f64),
             directions in proptest::collection::vec(proptest::array::uniform3(-1.0..1.0f64), 20),
         ) {
+            let mut power = seed[..count(degree)].to_vec();
+            *power.last_mut().unwrap() += shift;
+            let polynomial = csg::Polynomial::new(degree, power).unwrap();
+            let primitive = csg::Primitive { polynomial, coefficient_error: 0.0 };
+            let tables: Vec<_> = (1..5).map(DegreeTable::new).collect();
+            let margin = Margin::new(radius, &tables, &[Hessian::of(&primitive)]);
+            let mut c = RootCoefficients::new(&primitive).roots[2].clone();
             let mut simplex = Simplex::roots()[2];
             for turn in turns {
+                let mut halves = [vec![0.0; c.len()], vec![0.0; c.len()]];
+                let [near, far] = &mut halves;
+                halve(degree, simplex.kind(), &c, near, far);
                 simplex = simplex.children()[usize::from(turn)];
+                c = std::mem::take(&mut halves[usize::from(turn)]);
             }
-            let tables: Vec<_> = (1..5).map(DegreeTable::new).collect();
-            let margin = Margin::new(radius, &tables);
-            let c: Vec<f64> = seed[..count(degree)].iter().map(|x| x + shift).collect();
             let class = classify(Criterion::Bezier, simplex.kind(), degree, &c, 0.0);
-            if class.value() != Ternary::Out || !margin.keeps_sign(radius, &simplex, degree, &c, &class, 0.0) {
+            let gradients = barycentric_gradients(&simplex);
+            let place = (margin.rate(simplex.level), &gradients);
+            let active = Active {
+                primitive: 0, degree: degree as u32, offset: 0, rounding: 0.0, root_rounding: 0.0,
+                model_error: 0.0, largest: class.largest(), value: class.value(), clearance: 0.0,
+            };
+            if class.value() == Ternary::Unknown
+                || margin.clearance(place, &active, &c, &class) < radius {
                 return Ok(());
             }
-            let gradients = barycentric_gradients(&simplex);
             // On the simplex' surface, where leaving it is quickest.
             let mut b = b;
             b[degree % 4] = 0.0;
             let sum = b.iter().sum::<f64>().max(1e-9);
-            let b = b.map(|x| x / sum);
+            let at: DVec3 = (0..4).map(|v| simplex.vertices[v].position() * (b[v] / sum)).sum();
             for direction in directions {
                 let by = DVec3::from(direction).normalize_or_zero() * radius;
-                let moved: [f64; 4] = std::array::from_fn(|v| b[v] + gradients[v].dot(by));
-                prop_assert!(evaluate(degree, &c, moved) > 0.0);
+                let value = primitive.polynomial.evaluate(at + by);
+                prop_assert_eq!(value > 0.0, class.value() == Ternary::Out);
             }
         }
     }

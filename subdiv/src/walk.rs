@@ -3,6 +3,7 @@
 
 use crate::bernstein::{count, vertex_values};
 use crate::blossom::RootCoefficients;
+use crate::certify::{BarycentricGradients, barycentric_gradients};
 use crate::classify::{Criterion, classify};
 use crate::halving::halve;
 use crate::margin::Margin;
@@ -31,6 +32,8 @@ pub(crate) struct Active {
     pub largest: f64,
     /// Its sign, where that is known in the simplex but not everywhere near it.
     pub value: Ternary,
+    /// How far around the simplex that is proved at least, where there is a margin.
+    pub clearance: f64,
 }
 
 impl Active {
@@ -194,7 +197,7 @@ impl Walker {
     pub(crate) fn roots(&mut self, solid: &Solid, roots: &[RootCoefficients]) -> Vec<Sector> {
         let mut sectors = Vec::new();
         for (at, simplex) in Simplex::roots().into_iter().enumerate() {
-            let mut frame = Frame::default();
+            let (mut frame, mut gradients) = (Frame::default(), None);
             for (primitive, root) in roots.iter().enumerate() {
                 let coefficients = &root.roots[at];
                 let active = Active {
@@ -206,9 +209,10 @@ impl Walker {
                     model_error: root.model_error,
                     largest: 0.0,
                     value: Ternary::Unknown,
+                    clearance: 0.0,
                 };
                 frame.coefficients.extend_from_slice(coefficients);
-                self.classify(0, &simplex, &mut frame, active);
+                self.classify(0, (&simplex, &mut gradients), &mut frame, active);
             }
             let values = &self.values[0];
             let value = |p: PrimitiveId| values[p.0 as usize];
@@ -281,6 +285,7 @@ impl Walker {
         near.clear();
         far.clear();
         let mut forgotten = [false; 2];
+        let mut gradients = [None; 2];
         for active in &parent.active {
             let degree = active.degree as usize;
             let length = count(degree);
@@ -301,7 +306,8 @@ impl Walker {
                     rounding,
                     ..*active
                 };
-                forgotten[side] |= !self.classify(side, &children[side], frame, child);
+                let place = (&children[side], &mut gradients[side]);
+                forgotten[side] |= !self.classify(side, place, frame, child);
             }
         }
         let near_open = self.prune(parent, near, 0, forgotten[0]);
@@ -311,10 +317,12 @@ impl Walker {
 
     /// Classifies the primitive whose coefficients end the frame's list, and keeps it unless its
     /// sign is known in the simplex and around it; whether it was kept.
+    ///
+    /// `gradients`: those of the simplex, found when they are needed first.
     fn classify(
         &mut self,
         side: usize,
-        simplex: &Simplex,
+        (simplex, gradients): (&Simplex, &mut Option<BarycentricGradients>),
         frame: &mut Frame,
         mut active: Active,
     ) -> bool {
@@ -334,14 +342,10 @@ impl Walker {
         let decided = active.value != Ternary::Unknown;
         let forget = decided
             && self.margin.as_ref().is_none_or(|margin| {
-                margin.keeps_sign(
-                    margin.radius,
-                    simplex,
-                    degree,
-                    coefficients,
-                    &class,
-                    active.error(),
-                )
+                let gradients = gradients.get_or_insert_with(|| barycentric_gradients(simplex));
+                let place = (margin.rate(simplex.level), &*gradients);
+                active.clearance = margin.clearance(place, &active, coefficients, &class);
+                active.clearance >= margin.radius
             });
         let primitive = active.primitive as usize;
         self.inner_values[side][primitive] = active.value;

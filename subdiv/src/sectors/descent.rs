@@ -95,6 +95,7 @@ impl<'a> Descent<'a> {
                 model_error: 0.0,
                 largest: 0.0,
                 value: Ternary::Unknown,
+                clearance: 0.0,
             });
             frame.coefficients.extend_from_slice(coefficients);
         }

@@ -57,6 +57,7 @@ impl Sample {
             model_error: 0.0,
             largest: self.coefficients.iter().fold(0.0, |m, c| c.abs().max(m)),
             value: csg::Ternary::Unknown,
+            clearance: 0.0,
         }
     }
 
@@ -401,6 +402,7 @@ proptest! {
             model_error: roots.model_error,
             largest: 0.0,
             value: csg::Ternary::Unknown,
+            clearance: 0.0,
         };
         for far in turns {
             active.largest = coefficients.iter().fold(0.0, |m, c| c.abs().max(m));
