@@ -270,10 +270,11 @@ pub(crate) struct InfoArgs {
     pub(crate) clip: Option<Vec<f64>>,
 }
 
-/// A model to measure.
+/// A model or mesh to measure.
 #[derive(Args, Debug)]
 pub(crate) struct PropertiesArgs {
-    /// The model to read; `-` is standard input
+    /// The model to convert, or the OBJ, GLB, STL, 3MF or PLY file to measure as it is; `-` is
+    /// standard input
     #[arg(value_name = "IN")]
     pub(crate) input: PathBuf,
     #[command(flatten)]

@@ -16,6 +16,8 @@ pub(crate) enum Input {
     Stdin,
     /// A file.
     File(PathBuf),
+    /// Content that was read before, and the name it is known by.
+    Read { name: String, bytes: Vec<u8> },
 }
 
 /// A model and what there is to say about its text.
@@ -42,6 +44,7 @@ impl Input {
         match self {
             Self::Stdin => "<stdin>".to_owned(),
             Self::File(path) => path.display().to_string(),
+            Self::Read { name, .. } => name.clone(),
         }
     }
 
@@ -133,6 +136,7 @@ impl Input {
                 read.map(|_| bytes).map_err(failed)
             }
             Self::File(path) => std::fs::read(path).map_err(failed),
+            Self::Read { bytes, .. } => Ok(bytes.clone()),
         }
     }
 }

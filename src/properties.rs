@@ -3,30 +3,54 @@
 use crate::args::PropertiesArgs;
 use crate::convert::new_report;
 use crate::failure::Failure;
-use crate::output;
+use crate::input::Input;
 use crate::pipeline::{self, Boundary};
 use crate::progress::Progress;
 use crate::report::Report;
 use crate::run::{Job, Target};
 use crate::summary::{counted, number, rounded_up, triple};
 use crate::talk::Talk;
-use brep::{Properties, ShellId, Shells};
+use crate::{mesh_file, output};
+use brep::{Brep, Properties, ShellId, Shells, Valid};
+use io::read::mesh;
 use serde_json::{Value, json};
 
-/// Converts, measures, and prints on standard output.
+/// Converts if need be, measures, and prints on standard output.
 pub(crate) fn run(args: PropertiesArgs, talk: Talk) -> Result<(), Failure> {
-    let job = Job::new(args.input, &args.model)?;
-    let mut report = new_report(&job);
-    let progress = Progress::new(talk.is_quiet());
-    let Boundary { brep, .. } = pipeline::run(&job, None, talk, &progress, &mut report)?;
-    let shells = Shells::of(&brep);
-    let measured = Measured {
-        total: Properties::of(&brep),
-        solids: Properties::of_solids(&brep, &shells),
-        shells,
-        report,
+    let mut job = Job::new(args.input, &args.model)?;
+    // A mesh is measured as it is; its format is told before that of a model.
+    let bytes = job.input.bytes()?;
+    let name = job.input.name();
+    let measured = if let Some(format) = mesh::sniff(&bytes, &name) {
+        let mesh = mesh_file::parse(&bytes, format, &name, job.max_memory_bytes)?;
+        let (brep, notes) = mesh_file::boundary(&mesh, &name)?;
+        for note in &notes {
+            talk.warn(&format!("{name}: {note}"));
+        }
+        let source = Source {
+            name,
+            format: Some(format.name()),
+            unit: mesh.unit.clone(),
+            origin: String::new(),
+            warnings: notes,
+            report: None,
+        };
+        Measured::new(&brep, source)
+    } else {
+        job.input = Input::Read { name, bytes };
+        let mut report = new_report(&job);
+        let progress = Progress::new(talk.is_quiet());
+        let Boundary { brep, .. } = pipeline::run(&job, None, talk, &progress, &mut report)?;
+        let source = Source {
+            name: report.input.name.clone(),
+            format: report.input.format,
+            unit: None,
+            origin: origin(&report),
+            warnings: report.warnings.clone(),
+            report: Some(report),
+        };
+        Measured::new(&brep, source)
     };
-    drop(progress);
     let text = if args.json {
         let json = serde_json::to_string_pretty(&measured.to_json());
         json.map_err(|error| Failure::Bug(error.to_string()))? + "\n"
@@ -36,27 +60,86 @@ pub(crate) fn run(args: PropertiesArgs, talk: Talk) -> Result<(), Failure> {
     output::write_bytes(&Target::Stdout, text.as_bytes())
 }
 
+/// What was measured.
+struct Source {
+    name: String,
+    format: Option<&'static str>,
+    /// Of a mesh whose format says it.
+    unit: Option<String>,
+    /// How far the triangles are from the model; empty where that is not known.
+    origin: String,
+    warnings: Vec<String>,
+    /// Of a model that was converted.
+    report: Option<Report>,
+}
+
 struct Measured {
+    source: Source,
+    triangles: u64,
     total: Properties,
     /// As many as the shells' solids.
     solids: Vec<Properties>,
     shells: Shells,
-    report: Report,
+}
+
+/// How far the triangles are from the model.
+fn origin(report: &Report) -> String {
+    let mut facts = Vec::new();
+    facts.extend(report.proved_distance.map(|distance| {
+        if distance == 0.0 {
+            "exact".to_owned()
+        } else {
+            format!("deviation <= {}", rounded_up(distance))
+        }
+    }));
+    let measured = report.largest_deviation.map(rounded_up);
+    facts.extend(measured.map(|distance| format!("deviation {distance} (measured)")));
+    if report.uncertified_count > 0 {
+        let cells = counted(report.uncertified_count, "cell");
+        facts.push(format!("{cells} not certified"));
+    }
+    facts.join(", ")
 }
 
 impl Measured {
+    fn new(brep: &Valid<Brep>, source: Source) -> Self {
+        let shells = Shells::of(brep);
+        Self {
+            source,
+            triangles: brep.facet_count() as u64,
+            total: Properties::of(brep),
+            solids: Properties::of_solids(brep, &shells),
+            shells,
+        }
+    }
+
     fn to_text(&self) -> String {
-        let name = &self.report.input.name;
-        if self.solids.is_empty() {
+        let Source {
+            name, origin, unit, ..
+        } = &self.source;
+        if self.triangles == 0 {
             return format!("{name}: the solid is empty\n");
         }
-        let mut lines = vec![format!("{name}: {}", self.origin())];
+        let mut facts = vec![format!(
+            "measured on {}",
+            counted(self.triangles, "triangle")
+        )];
+        if self.source.report.is_none() || !origin.is_empty() {
+            facts.push(origin.clone());
+        }
+        facts.extend(unit.as_ref().map(|unit| format!("lengths in {unit}")));
+        let mut lines = vec![format!("{name}: {}", facts.join(", "))];
         if let [_] = self.solids.as_slice() {
             lines.push(self.title(0));
         } else {
             lines.push(counted(self.solids.len() as u64, "solid") + " together");
         }
-        lines.extend(measures(&self.total, self.report.volume_interval));
+        let interval = self
+            .source
+            .report
+            .as_ref()
+            .and_then(|report| report.volume_interval);
+        lines.extend(measures(&self.total, interval));
         if self.solids.len() > 1 {
             for (at, solid) in self.solids.iter().enumerate() {
                 lines.push(self.title(at));
@@ -64,27 +147,6 @@ impl Measured {
             }
         }
         lines.join("\n") + "\n"
-    }
-
-    /// Of what the numbers are, and how far that is from the model.
-    fn origin(&self) -> String {
-        let report = &self.report;
-        let facets = counted(report.counts.facets, "triangle");
-        let mut facts = vec![format!("measured on {facets}")];
-        facts.extend(report.proved_distance.map(|distance| {
-            if distance == 0.0 {
-                "exact".to_owned()
-            } else {
-                format!("deviation <= {}", rounded_up(distance))
-            }
-        }));
-        let measured = report.largest_deviation.map(rounded_up);
-        facts.extend(measured.map(|distance| format!("deviation {distance} (measured)")));
-        if report.uncertified_count > 0 {
-            let cells = counted(report.uncertified_count, "cell");
-            facts.push(format!("{cells} not certified"));
-        }
-        facts.join(", ")
     }
 
     /// `solid 1: 2 shells, genus 0`.
@@ -113,16 +175,19 @@ impl Measured {
             value
         });
         let solids: Vec<Value> = solids.collect();
+        let report = self.source.report.as_ref();
         let mut total = values(&self.total);
-        total["volume_interval"] = json!(self.report.volume_interval);
+        total["volume_interval"] = json!(report.and_then(|report| report.volume_interval));
         json!({
             "schema_version": 1,
-            "name": self.report.input.name,
-            "triangles": self.report.counts.facets,
-            "proved_distance": self.report.proved_distance,
-            "largest_deviation": self.report.largest_deviation,
-            "uncertified_count": self.report.uncertified_count,
-            "warnings": self.report.warnings,
+            "name": self.source.name,
+            "format": self.source.format,
+            "unit": self.source.unit,
+            "triangles": self.triangles,
+            "proved_distance": report.and_then(|report| report.proved_distance),
+            "largest_deviation": report.and_then(|report| report.largest_deviation),
+            "uncertified_count": report.map(|report| report.uncertified_count),
+            "warnings": self.source.warnings,
             "total": total,
             "solids": solids,
         })
@@ -135,6 +200,7 @@ fn measures(of: &Properties, volume_interval: Option<[f64; 2]>) -> Vec<String> {
     let largest = inertia.to_cols_array().into_iter();
     let largest = largest.fold(0.0, |largest: f64, entry| largest.max(entry.abs()));
     let proved = volume_interval.map_or_else(String::new, |[low, high]| {
+        let [low, high] = outward(low, high).map(|bound| number(bound, 0.0));
         format!(" (proved: {low} to {high})")
     });
     let [min, max] = [of.bounds.min, of.bounds.max].map(|corner| triple(corner, size));
@@ -147,6 +213,12 @@ fn measures(of: &Properties, volume_interval: Option<[f64; 2]>) -> Vec<String> {
         format!("            {}", triple(inertia.row(2), largest)),
         format!("  box       {min} to {max}"),
     ]
+}
+
+/// Bounds that stay bounds when they are rounded to nine digits.
+fn outward(low: f64, high: f64) -> [f64; 2] {
+    const MARGIN: f64 = 1e-8;
+    [low - MARGIN * low.abs(), high + MARGIN * high.abs()]
 }
 
 /// Numbers that JSON does not have become null.

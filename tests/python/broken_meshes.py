@@ -149,13 +149,13 @@ def threemf(positions, triangles):
     text += [' transform="0 1 0 -1 0 0 0 0 1 10 20 30"/></build></model>']
     relations = (
         '<Relationships xmlns="http://schemas.openxmlformats.org/package/2006/relationships">'
-        '<Relationship Id="r" Target="/3D/model.model" '
+        '<Relationship Id="r" Target="/3D/3dmodel.model" '
         'Type="http://schemas.microsoft.com/3dmanufacturing/2013/01/3dmodel"/></Relationships>'
     )
     out = io.BytesIO()
     with zipfile.ZipFile(out, "w", zipfile.ZIP_DEFLATED) as archive:
         archive.writestr("_rels/.rels", relations)
-        archive.writestr("3D/model.model", "\n".join(text))
+        archive.writestr("3D/3dmodel.model", "\n".join(text))
     return out.getvalue()
 
 
