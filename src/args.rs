@@ -249,6 +249,10 @@ pub(crate) struct ViewArgs {
     /// Where the viewer stands
     #[arg(long, value_name = "SIDE", default_value = "iso")]
     pub(crate) from: Side,
+    /// Show the true solid: a ray for each sample, traced through the subdivision. The mesh only
+    /// casts the shadows
+    #[arg(long)]
+    pub(crate) raytrace: bool,
 }
 
 /// A model to describe.

@@ -4,7 +4,7 @@ use crate::args::{Side, ViewArgs};
 use crate::convert::new_report;
 use crate::failure::Failure;
 use crate::output;
-use crate::pipeline;
+use crate::pipeline::{self, Boundary};
 use crate::progress::Progress;
 use crate::run::{Job, Target, check_targets};
 use crate::summary::summary;
@@ -26,7 +26,15 @@ pub(crate) fn run(args: ViewArgs, talk: Talk) -> Result<(), Failure> {
     let progress = Progress::new(talk.is_quiet());
     let boundary = pipeline::run(&job, None, talk, &progress, &mut report)?;
     progress.begin("drawing");
+    if args.raytrace && boundary.is_mesh {
+        let text = "the input is a mesh, which has lost its surfaces: draw it without --raytrace";
+        return Err(Failure::BadInput(text.to_owned()));
+    }
     output::to_target(&target, |mut out| {
+        if args.raytrace {
+            let Boundary { brep, solid, .. } = &boundary;
+            return picture::write_traced(brep, solid, &options, &mut out);
+        }
         let shading = Shading::on_surfaces(&boundary.brep, &boundary.solid);
         let materials = &boundary.solid.materials;
         picture::write_shaded(&boundary.brep, &shading, materials, &options, &mut out)

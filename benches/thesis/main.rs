@@ -2,10 +2,12 @@
 //!
 //! ```text
 //! cargo bench --bench thesis
+//! cargo bench --bench thesis -- rays
 //! ```
 //!
 //! One thread. `docs/thesis.md` says what the figures mean.
 
+mod rays;
 mod solids;
 
 use csg::{Polynomial, Primitive, Solid};
@@ -22,11 +24,16 @@ fn main() {
     if std::env::args().any(|a| a == "--list" || a == "--test") {
         return;
     }
+    if std::env::args().any(|a| a == "rays") {
+        rays::table();
+        return;
+    }
     conversion();
     refinement();
     spheres_table();
     boxes();
     criteria();
+    rays::table();
 }
 
 /// The shortest of some runs, in seconds.

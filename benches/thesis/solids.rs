@@ -8,7 +8,12 @@ use std::path::Path;
 pub(crate) const THREE: [&str; 3] = ["manchete", "atomo", "chupeta"];
 
 fn model(name: &str) -> Model {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("fixtures/thesis");
+    read_fixture(&format!("thesis/{name}"))
+}
+
+/// A model in `fixtures/`, named without its extension.
+pub(crate) fn read_fixture(name: &str) -> Model {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("fixtures");
     let source = std::fs::read_to_string(folder.join(format!("{name}.csg")));
     let source = source.expect("a fixture");
     let options = io::read::ReadOptions::default();

@@ -60,6 +60,7 @@ mod pieces;
 mod polygon;
 mod predicates;
 mod prove;
+pub mod rays;
 mod remainder;
 mod rounding;
 pub mod sectors;

@@ -274,7 +274,7 @@ impl Walker {
     }
 
     /// Fills the frames of both children; tells in which the formula is undecided.
-    fn descend(
+    pub(crate) fn descend(
         &mut self,
         parent: &Frame,
         kind: u8,

@@ -42,6 +42,9 @@ pub enum Error {
     /// A picture could not be encoded.
     #[error("cannot encode the picture")]
     Png(#[from] png::EncodingError),
+    /// Rays could not be followed through the solid.
+    #[error("cannot trace rays")]
+    Rays(#[from] subdiv::Error),
     /// A picture without pixels, or with more than can be rendered.
     #[error("a picture of {width} × {height} pixels cannot be rendered")]
     PictureSize {

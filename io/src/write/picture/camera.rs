@@ -108,6 +108,13 @@ impl Camera {
         )
     }
 
+    /// Coordinates along right and up of what is seen at a sample.
+    pub(super) fn coordinates_of(&self, sample: Vec2) -> [f64; 2] {
+        let x = f64::from(sample.x) - f64::from(self.offset.x);
+        let y = f64::from(self.offset.y) - f64::from(sample.y);
+        [x, y].map(|steps| steps / f64::from(self.scale))
+    }
+
     /// The point that projects there.
     pub(super) fn unproject(&self, sample: Vec2, depth: f32) -> Vec3 {
         let x = (sample.x - self.offset.x) / self.scale;

@@ -10,8 +10,8 @@
     reason = "offsets within a block of samples"
 )]
 
-use super::raster::{Block, NOTHING, Prepared};
-use super::scene::Scene;
+use super::raster::NOTHING;
+use super::seen::Seen;
 use std::ops::Range;
 
 /// Depth step between neighbouring samples that makes an outline, in radii of the scene.
@@ -22,14 +22,9 @@ const SMOOTH: u8 = 70;
 const SHARP: u8 = 215;
 
 /// How strongly lines cover the samples of some rows, 0 to 255; row by row.
-pub(super) fn trace(
-    scene: &Scene,
-    prepared: &[Option<Prepared>],
-    block: &Block,
-    rows: &Range<i64>,
-    radius: f32,
-) -> Vec<u8> {
-    let width = block.columns.end - block.columns.start;
+pub(super) fn trace(seen: &impl Seen, rows: &Range<i64>, radius: f32) -> Vec<u8> {
+    let [columns, all_rows] = seen.extent();
+    let width = columns.end - columns.start;
     let mut darkness = vec![0_u8; (width * (rows.end - rows.start)) as usize];
     if radius <= 0.0 {
         return darkness;
@@ -39,31 +34,25 @@ pub(super) fn trace(
         .flat_map(|dy| (-reach..=reach).map(move |dx| (dx, dy)))
         .filter(|&(dx, dy)| (dx * dx + dy * dy) as f32 <= radius * radius)
         .collect();
-    for row in block.rows.clone() {
-        for column in block.columns.clone() {
+    for row in all_rows.clone() {
+        for column in columns.clone() {
             for (other_column, other_row) in [(column + 1, row), (column, row + 1)] {
-                if other_column >= block.columns.end || other_row >= block.rows.end {
+                if other_column >= columns.end || other_row >= all_rows.end {
                     continue;
                 }
-                let strength = boundary(
-                    scene,
-                    prepared,
-                    block,
-                    [column, row],
-                    [other_column, other_row],
-                );
+                let strength = boundary(seen, [column, row], [other_column, other_row]);
                 if strength == 0 {
                     continue;
                 }
                 // The nearer of the two owns the line.
-                let near = block.depth(column, row) >= block.depth(other_column, other_row);
+                let near = seen.depth([column, row]) >= seen.depth([other_column, other_row]);
                 let (x, y) = if near {
                     (column, row)
                 } else {
                     (other_column, other_row)
                 };
                 for (dx, dy) in &disc {
-                    let (x, y) = (x + dx - block.columns.start, y + dy);
+                    let (x, y) = (x + dx - columns.start, y + dy);
                     if (0..width).contains(&x) && rows.contains(&y) {
                         let at = ((y - rows.start) * width + x) as usize;
                         darkness[at] = darkness[at].max(strength);
@@ -75,40 +64,25 @@ pub(super) fn trace(
     darkness
 }
 
-fn boundary(
-    scene: &Scene,
-    prepared: &[Option<Prepared>],
-    block: &Block,
-    [column, row]: [i64; 2],
-    [other_column, other_row]: [i64; 2],
-) -> u8 {
-    let first = block.triangle(column, row);
-    let second = block.triangle(other_column, other_row);
-    if first == second {
+fn boundary(seen: &impl Seen, first: [i64; 2], second: [i64; 2]) -> u8 {
+    let pieces = [seen.piece(first), seen.piece(second)];
+    if pieces[0] == pieces[1] {
         return 0;
     }
-    if first == NOTHING || second == NOTHING {
+    if pieces.contains(&NOTHING) {
         return SHARP;
     }
-    let step = {
-        let depths = [
-            block.depth(column, row),
-            block.depth(other_column, other_row),
-        ];
-        let predicted = |triangle: u32, column: i64, row: i64| {
-            let prepared = prepared[triangle as usize].as_ref();
-            prepared.map_or(f32::NAN, |p| p.plane_depth(column as f32, row as f32))
-        };
-        let errors = [
-            (predicted(first, other_column, other_row) - depths[1]).abs(),
-            (predicted(second, column, row) - depths[0]).abs(),
-        ];
-        errors[0].min(errors[1]) > STEP
-    };
+    let errors = [
+        (seen.predicted(first, second) - seen.depth(second)).abs(),
+        (seen.predicted(second, first) - seen.depth(first)).abs(),
+    ];
+    let step = errors[0].min(errors[1]) > STEP;
     if step {
         return SHARP;
     }
-    let [a, b] = [first, second].map(|triangle| scene.triangles[triangle as usize]);
+    let (Some(a), Some(b)) = (seen.patch(first), seen.patch(second)) else {
+        return SHARP;
+    };
     if a.face == b.face {
         return 0;
     }

@@ -3,7 +3,7 @@
 use crate::write::appearance;
 use brep::{Brep, Shading, Valid};
 use csg::Material;
-use glam::Vec3;
+use glam::{DVec3, Vec3};
 
 /// A triangle to draw.
 #[derive(Clone, Copy, Debug)]
@@ -27,6 +27,10 @@ pub(super) struct Scene {
     pub triangles: Vec<Triangle>,
     /// Height of the lowest point.
     pub floor: f32,
+    /// Where its origin is, in model units.
+    pub origin: DVec3,
+    /// How long its unit is, in model units.
+    pub unit: f64,
 }
 
 impl Scene {
@@ -38,7 +42,7 @@ impl Scene {
         let Shading { groups, corners } = shading;
         let centre = bounds.min + (bounds.max - bounds.min) * 0.5;
         let radius = (bounds.diagonal() / 2.0).max(f64::MIN_POSITIVE);
-        let fit = |position: glam::DVec3| ((position - centre) / radius).as_vec3();
+        let fit = |position: DVec3| ((position - centre) / radius).as_vec3();
         let triangles = brep.facets().map(|facet| {
             let [red, green, blue, _] = appearance::color(materials, facet.material());
             Triangle {
@@ -59,6 +63,8 @@ impl Scene {
                 .collect(),
             normals: list.iter().map(|corner| corner.normal.as_vec3()).collect(),
             floor: fit(bounds.min).z,
+            origin: centre,
+            unit: radius,
         }
     }
 }

@@ -9,12 +9,15 @@
 
 use super::camera::{Axes, Camera};
 use super::light::{GROUPS, Light, Lights};
-use super::raster::{Block, Corner, NOTHING, Prepared};
+use super::raster::{Corner, Prepared};
 use super::scene::Scene;
+use super::seen::{Mesh, Seen, Surface, centre};
+use super::truth::Truth;
 use super::{Options, lines};
 use crate::write::appearance::{linear, srgb};
 use glam::{Vec2, Vec3};
 use rayon::prelude::*;
+use std::ops::Range;
 
 /// Rows of pixels that are rendered together.
 const BAND: u32 = 16;
@@ -25,8 +28,13 @@ const MARGIN: f32 = 0.09;
 /// Colour of lines, linear light.
 const INK: Vec3 = Vec3::new(0.012, 0.016, 0.024);
 
-/// Renders to RGB bytes, sRGB, row by row.
-pub(super) fn render(scene: &Scene, options: &Options) -> Vec<u8> {
+/// Renders to RGB bytes, sRGB, row by row; with a truth, the scene only gives the frame and what
+/// keeps light away.
+pub(super) fn render(
+    scene: &Scene,
+    truth: Option<&Truth>,
+    options: &Options,
+) -> Result<Vec<u8>, subdiv::Error> {
     let samples = options.samples.clamp(1, 8);
     let axes = Axes::of_view(options.view);
     let size = Vec2::new(options.width as f32, options.height as f32) * samples as f32;
@@ -51,6 +59,7 @@ pub(super) fn render(scene: &Scene, options: &Options) -> Vec<u8> {
     };
     let renderer = Renderer {
         scene,
+        truth,
         options,
         samples: i64::from(samples),
         camera,
@@ -67,8 +76,10 @@ pub(super) fn render(scene: &Scene, options: &Options) -> Vec<u8> {
     pixels
         .par_chunks_mut(row_bytes * BAND as usize)
         .enumerate()
-        .for_each(|(band, pixels)| renderer.render_band(band as i64 * i64::from(BAND), pixels));
-    pixels
+        .try_for_each(|(band, pixels)| {
+            renderer.render_band(band as i64 * i64::from(BAND), pixels)
+        })?;
+    Ok(pixels)
 }
 
 /// How much light reaches the plane on which the solid stands, on a grid over the picture.
@@ -184,6 +195,7 @@ struct Group {
 
 struct Renderer<'a> {
     scene: &'a Scene,
+    truth: Option<&'a Truth<'a>>,
     options: &'a Options,
     samples: i64,
     camera: Camera,
@@ -195,7 +207,7 @@ struct Renderer<'a> {
 }
 
 impl Renderer<'_> {
-    fn render_band(&self, first_row: i64, pixels: &mut [u8]) {
+    fn render_band(&self, first_row: i64, pixels: &mut [u8]) -> Result<(), subdiv::Error> {
         let width = i64::from(self.options.width);
         let samples = self.samples;
         let row_count = pixels.len() as i64 / (3 * width);
@@ -203,22 +215,31 @@ impl Renderer<'_> {
         let radius = self.options.line_width.max(0.0) * 0.5 * samples as f32;
         // Lines reach into the band from rows beside it.
         let halo = radius.ceil() as i64 + 1;
-        let mut block = Block::new(0..width * samples, rows.start - halo..rows.end + halo);
-        for (number, prepared) in (0..).zip(&self.prepared) {
-            let Some(prepared) = prepared else { continue };
-            let touched = prepared.rows();
-            if touched.start < block.rows.end && touched.end > block.rows.start {
-                block.draw(number, prepared);
-            }
+        let columns = 0..width * samples;
+        let with_halo = rows.start - halo..rows.end + halo;
+        if let Some(truth) = self.truth {
+            let seen = truth.look(&self.camera, columns, with_halo)?;
+            self.color_band(&seen, &rows, radius, pixels);
+        } else {
+            let (scene, prepared) = (self.scene, &self.prepared);
+            let seen = Mesh::draw(scene, &self.camera, prepared, columns, with_halo);
+            self.color_band(&seen, &rows, radius, pixels);
         }
-        let darkness = lines::trace(self.scene, &self.prepared, &block, &rows, radius);
+        Ok(())
+    }
+
+    /// `radius`: half the width of lines, in samples.
+    fn color_band(&self, seen: &impl Seen, rows: &Range<i64>, radius: f32, pixels: &mut [u8]) {
+        let width = i64::from(self.options.width);
+        let samples = self.samples;
+        let darkness = lines::trace(seen, rows, radius);
         for (at, pixel) in (0..).zip(pixels.chunks_exact_mut(3)) {
             let (x, y) = (at % width, at / width);
             let mut sum = Vec3::ZERO;
             for sub in 0..samples * samples {
                 let column = x * samples + sub % samples;
                 let row = rows.start + y * samples + sub / samples;
-                let color = self.sample(&block, column, row, sub);
+                let color = self.sample(seen, [column, row], sub);
                 let line = darkness[((row - rows.start) * width * samples + column) as usize];
                 sum += color.lerp(INK, f32::from(line) / 255.0);
             }
@@ -230,7 +251,7 @@ impl Renderer<'_> {
     }
 
     /// Colour at a sample, linear light.
-    fn sample(&self, block: &Block, column: i64, row: i64, sub: i64) -> Vec3 {
+    fn sample(&self, seen: &impl Seen, at: [i64; 2], sub: i64) -> Vec3 {
         // The samples of a pixel share the lights out among themselves.
         let groups = match self.samples {
             1 => 1,
@@ -242,25 +263,18 @@ impl Renderer<'_> {
             first: sub as usize % groups,
             step: groups,
         };
-        let number = block.triangle(column, row);
-        let place = Vec2::new(column as f32 + 0.5, row as f32 + 0.5);
-        match self.prepared.get(number as usize) {
-            Some(Some(prepared)) if number != NOTHING => {
-                let point = self.camera.unproject(place, block.depth(column, row));
-                let weights = prepared.barycentric(column, row);
-                self.surface(number, point, weights, group)
-            }
-            _ => self.backdrop(place),
+        match seen.surface(at) {
+            Some(surface) => self.lit(&surface, group),
+            None => self.backdrop(centre(at)),
         }
     }
 
-    fn surface(&self, number: u32, point: Vec3, weights: Vec3, group: Group) -> Vec3 {
-        let triangle = &self.scene.triangles[number as usize];
-        let [a, b, c] = triangle
-            .corners
-            .map(|corner| self.scene.normals[corner as usize]);
-        let normal = a * weights.x + b * weights.y + c * weights.z;
-        let normal = normal.try_normalize().unwrap_or(triangle.normal);
+    fn lit(&self, surface: &Surface, group: Group) -> Vec3 {
+        let Surface {
+            point,
+            normal,
+            color,
+        } = *surface;
         let eye = self.camera.axes.toward;
         let share = |list: &[Light]| group.step as f32 / list.len().max(1) as f32;
         let own = |list: &'_ [Light]| (group.first..list.len()).step_by(group.step);
@@ -282,7 +296,7 @@ impl Renderer<'_> {
         let facing = normal.dot(eye).clamp(0.0, 1.0);
         // Fresnel's rise toward the outline, after Schlick.
         let rim = 0.10 * (1.0 - facing).powi(5) * light;
-        shoulder(triangle.color * light + rim + Vec3::splat(0.10 * shine))
+        shoulder(color * light + rim + Vec3::splat(0.10 * shine))
     }
 
     /// Background, darkened where the solid keeps light from the ground.
