@@ -182,6 +182,15 @@ pub(crate) struct ModelArgs {
         help_heading = "Precision"
     )]
     pub(crate) mesh: MeshKind,
+    /// On which side of the true surfaces the facets of --mesh surfaces are
+    #[arg(
+        long,
+        value_name = "SIDE",
+        default_value = "inscribed",
+        hide_short_help = true,
+        help_heading = "Precision"
+    )]
+    pub(crate) fit: FitKind,
     /// Clip the model to this box; needed if it is unbounded
     #[arg(
         long = "box",
@@ -372,6 +381,15 @@ pub(crate) enum MeshKind {
     Merged,
     /// Those of the subdivision, one or more in each leaf
     Leaves,
+}
+
+/// Where the corners of facets lie.
+#[derive(ValueEnum, Clone, Copy, PartialEq, Eq, Debug)]
+pub(crate) enum FitKind {
+    /// On the true surfaces: convex ones lose volume
+    Inscribed,
+    /// Off them by no more than the tolerance, so that volumes are not biased
+    Mean,
 }
 
 /// Formats that can be read.

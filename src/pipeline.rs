@@ -105,7 +105,7 @@ fn mesh(
         )?;
         progress.begin("tessellation");
         let tessellated = report.timed("tessellation", || {
-            brep::tessellate(&coarse, solid, tolerance)
+            brep::tessellate(&coarse, solid, tolerance, job.fit)
         });
         stop_if_interrupted()?;
         if let Some((brep, counts)) = tessellated {

@@ -98,6 +98,8 @@ pub(crate) struct SettingsReport {
     pub(crate) criterion: &'static str,
     /// Whether planar faces are filled from their edges or left in pieces.
     pub(crate) mesh: &'static str,
+    /// Whether corners lie on the true surfaces or on the average around them.
+    pub(crate) fit: &'static str,
     /// The clip box: smallest, then largest coordinates.
     #[serde(rename = "box")]
     pub(crate) clip: Option<[f64; 6]>,

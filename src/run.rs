@@ -41,6 +41,7 @@ pub(crate) struct Job {
     pub(crate) max_level: Option<u8>,
     pub(crate) criterion: subdiv::Criterion,
     pub(crate) mesh: args::MeshKind,
+    pub(crate) fit: brep::Fit,
     pub(crate) threads: Option<usize>,
     pub(crate) max_cells: u64,
     pub(crate) max_memory_bytes: u64,
@@ -91,6 +92,10 @@ impl Job {
             let text = "--mesh surfaces needs a tolerance: leave out --level";
             return Err(Failure::Usage(text.to_owned()));
         }
+        if args.fit == args::FitKind::Mean && args.mesh != args::MeshKind::Surfaces {
+            let text = "--fit mean moves the facets of --mesh surfaces: add that";
+            return Err(Failure::Usage(text.to_owned()));
+        }
         Ok(Self {
             input: Input::new(input),
             read: ReadOptions {
@@ -111,6 +116,10 @@ impl Job {
                 args::Criterion::Lipschitz => subdiv::Criterion::Lipschitz,
             },
             mesh: args.mesh,
+            fit: match args.fit {
+                args::FitKind::Inscribed => brep::Fit::Inscribed,
+                args::FitKind::Mean => brep::Fit::Mean,
+            },
             threads: args.threads.map(usize::from),
             max_cells: args.max_cells.get(),
             max_memory_bytes: memory::allowed_bytes(args.memory),
@@ -167,6 +176,10 @@ impl Job {
                 args::MeshKind::Surfaces => "surfaces",
                 args::MeshKind::Merged => "merged",
                 args::MeshKind::Leaves => "leaves",
+            },
+            fit: match self.fit {
+                brep::Fit::Inscribed => "inscribed",
+                brep::Fit::Mean => "mean",
             },
             clip,
             facet_limit: self.read.facet_limit,

@@ -11,7 +11,7 @@ mod stages;
 mod support;
 mod trees;
 
-use brep::{Brep, Groups, Properties, Shells, Tessellated, Valid, tessellate};
+use brep::{Brep, Fit, Groups, Properties, Shells, Tessellated, Valid, tessellate};
 use csg::{Model, Solid};
 use rayon::prelude::*;
 use std::f64::consts::PI;
@@ -22,6 +22,10 @@ use trees::{Setting, number, trees};
 
 /// Proves the topology and tessellates; `None` where it cannot be done.
 fn tessellated(solid: &Solid, tolerance: f64) -> Option<(Valid<Brep>, Tessellated, bool)> {
+    fitted(solid, tolerance, Fit::Inscribed)
+}
+
+fn fitted(solid: &Solid, tolerance: f64, fit: Fit) -> Option<(Valid<Brep>, Tessellated, bool)> {
     let rule = Rule::Topology { finest: tolerance };
     let settings = Settings {
         threads: Some(1),
@@ -33,7 +37,7 @@ fn tessellated(solid: &Solid, tolerance: f64) -> Option<(Valid<Brep>, Tessellate
         .validate()
         .unwrap();
     let proved = outcome.report.proved_topology == Some(true);
-    let (brep, counts) = tessellate(&coarse, solid, tolerance)?;
+    let (brep, counts) = tessellate(&coarse, solid, tolerance, fit)?;
     let before = (signature(&coarse), Groups::of(&coarse));
     let after = (signature(&brep), Groups::of(&brep));
     assert_eq!(before.0, after.0);
@@ -129,6 +133,68 @@ fn vertices_lie_on_the_surfaces_of_all_facets_around_them() {
                 vertex.position()
             );
         }
+    }
+}
+
+/// Half a sphere is a plane that must stay one, a crease and a curved face.
+#[test]
+fn a_mean_fit_keeps_volumes_planes_and_the_tolerance_with_fewer_triangles() {
+    let half_ball = "intersection() { sphere(r=1); translate([-2, -2, 0]) cube(4); }";
+    let tube = "difference() { cylinder(h=2, r=1); translate([0, 0, -1]) cylinder(h=4, r=0.5); }";
+    let torus = "rotate_extrude() translate([2, 0]) circle(r=0.5);";
+    let cases = [
+        ("sphere(r=1);", 4.0 * PI / 3.0),
+        (half_ball, 2.0 * PI / 3.0),
+        (tube, 1.5 * PI),
+        ("cylinder(h=2, r1=1, r2=0.5);", 7.0 * PI / 6.0),
+        (torus, 2.0 * PI * 2.0 * PI * 0.25),
+    ];
+    let folder = tempfile::tempdir().unwrap();
+    let mut paths = Vec::new();
+    for (source, volume) in cases {
+        let solid = Solid::build(&stages::read(source), None).unwrap();
+        for part in [0.01, 0.002] {
+            let tolerance = part * side(&solid);
+            let [(plain, few, _), (mean, fewer, _)] = [Fit::Inscribed, Fit::Mean]
+                .map(|fit| fitted(&solid, tolerance, fit).expect(source));
+            assert!(
+                fewer.facets_after <= few.facets_after,
+                "{source}: {fewer:?}"
+            );
+            assert!(
+                fewer.largest_deviation <= tolerance * 1.000_001,
+                "{source}: {fewer:?}"
+            );
+            let [biased, fair] =
+                [&plain, &mean].map(|brep| (Properties::of(brep).volume - volume).abs());
+            assert!(fair < 0.1 * biased, "{source}: {fair:e}, {biased:e} before");
+            // Measured here, from the polynomials: corners may leave curved surfaces only.
+            for facet in mean.facets() {
+                let polynomial = &solid.primitives[facet.primitive().0 as usize].polynomial;
+                let corners = facet.vertices().map(brep::VertexView::position);
+                let center = (corners[0] + corners[1] + corners[2]) / 3.0;
+                for at in corners.into_iter().chain([center]) {
+                    let at = solid.domain.to_unit(at);
+                    let slope = polynomial.gradient(at).length();
+                    let distance = polynomial.evaluate(at) / slope * solid.domain.size();
+                    let most = match polynomial.degree() {
+                        1 => 1e-12,
+                        // To the first order.
+                        _ => tolerance * 1.05,
+                    };
+                    assert!(distance.abs() <= most, "{source}: {distance:e}");
+                }
+            }
+            let path = folder.path().join(format!("{}.obj", paths.len()));
+            write(&mean, &path);
+            paths.push(path);
+        }
+    }
+    for report in support::manifold_report(&paths) {
+        assert_eq!(report.status, "NoError", "{report:?}");
+    }
+    for report in support::intersection_report(&paths) {
+        assert_eq!(report.crossings, 0, "{report:?}");
     }
 }
 

@@ -8,8 +8,10 @@
 //! 2. vertices inside curved faces go where the rest stays within the tolerance, and come, on
 //!    the surface, where it does not (`decimate`, `split`), by what is measured once for each
 //!    vertex and each edge (`measure`);
-//! 3. planar faces are filled from their loops (`crate::triangulate`);
-//! 4. triangles that pass through others are looked for, and their faces done more finely
+//! 3. if volumes are to be unbiased, vertices move off the surfaces by a part of the tolerance
+//!    (`fit`);
+//! 4. planar faces are filled from their loops (`crate::triangulate`);
+//! 5. triangles that pass through others are looked for, and their faces done more finely
 //!    (`crossings`).
 //!
 //! Everything happens by splitting, flipping and collapsing edges of one closed mesh, so it
@@ -18,6 +20,7 @@
 mod chains;
 mod crossings;
 mod decimate;
+mod fit;
 mod flips;
 mod measure;
 mod patchwork;
@@ -31,6 +34,7 @@ use crate::topology::Brep;
 use crate::triangulate::fill_loops;
 use crate::validate::Valid;
 use csg::Solid;
+pub use fit::Fit;
 use glam::DVec3;
 use patchwork::{NONE, Patchwork, Role, index};
 use sheet::Sheet;
@@ -59,8 +63,16 @@ const ROUNDS: usize = 6;
 /// Flips after one change, at most: they come to an end by themselves, but for rounding.
 const FLIPS: usize = 64;
 
+/// What the tolerance of a face is multiplied by when its facets pass through others, or stand
+/// across it.
+const FINER: f64 = 0.25;
+
+/// What it is multiplied by when facets are too far off after they were moved.
+const A_LITTLE_FINER: f64 = 0.75;
+
 /// Replaces the facets of a boundary by such as its surfaces need at this tolerance, in model
-/// units. `solid` is what the boundary was made from.
+/// units. `solid` is what the boundary was made from; `fit` says on which side of the surfaces
+/// the facets are.
 ///
 /// Faces, edges, vertices, shells and genus stay what they are. `None` if that cannot be had:
 /// then the boundary's own facets are the answer.
@@ -68,6 +80,7 @@ pub fn tessellate(
     brep: &Valid<Brep>,
     solid: &Solid,
     tolerance: f64,
+    fit: Fit,
 ) -> Option<(Valid<Brep>, Tessellated)> {
     let groups = Groups::of(brep);
     let sheets: Vec<Sheet<'_>> = solid
@@ -75,10 +88,15 @@ pub fn tessellate(
         .iter()
         .map(|primitive| Sheet::of(primitive, &solid.domain))
         .collect();
-    let mut tolerances = vec![tolerance; groups.faces.len()];
+    let mut tolerances: Vec<f64> = (groups.faces.iter())
+        .map(|face| fit.inscribed_tolerance(&sheets[face.primitive.0 as usize], tolerance))
+        .collect();
     for round in 0..ROUNDS {
-        let run = Run::new(brep, &groups, &sheets, &tolerances, solid);
-        let troubled = match run.facets() {
+        let mut run = Run::new(brep, &groups, &sheets, &tolerances, solid);
+        if fit == Fit::Mean {
+            run.fit_mean(tolerance);
+        }
+        let troubled = match run.facets(tolerance) {
             Ok(fragments) => {
                 let result = stitch(&fragments).ok()?.validate().ok()?;
                 let counts = Tessellated {
@@ -93,8 +111,8 @@ pub fn tessellate(
             }
             Err(faces) => faces,
         };
-        for face in troubled {
-            tolerances[face] *= 0.25;
+        for (face, finer) in troubled {
+            tolerances[face] *= finer;
         }
     }
     None
@@ -293,22 +311,25 @@ impl<'a> Run<'a> {
     }
 
     /// Faces with facets that deviate too much, or stand across their surface.
-    fn troubled(&self) -> Vec<usize> {
-        let mut faces: Vec<usize> = (self.mesh.facets())
-            .filter(|&facet| {
-                let shape = self.shape_of(3 * facet);
-                shape.error > 1.0 + 1e-9 || shape.lean > measure::UPRIGHT
-            })
-            .map(|facet| self.face_of(3 * facet))
-            .collect();
-        faces.dedup();
+    fn troubled(&self, tolerance: f64) -> Vec<(usize, f64)> {
+        let mut faces = Vec::new();
+        for facet in self.mesh.facets() {
+            let shape = self.shape_of(3 * facet);
+            let face = self.face_of(3 * facet);
+            if shape.error > 1.0 + 1e-9 || shape.lean > measure::UPRIGHT {
+                faces.push((face, FINER));
+            } else if self.deviation(facet) > tolerance * (1.0 + 1e-9) {
+                faces.push((face, A_LITTLE_FINER));
+            }
+        }
         faces
     }
 
     fn largest_deviation(&self) -> f64 {
-        let deviation =
-            |facet: u32| self.shape_of(3 * facet).error * self.tolerances[self.face_of(3 * facet)];
-        self.mesh.facets().map(deviation).fold(0.0, f64::max)
+        let facets = self.mesh.facets();
+        facets
+            .map(|facet| self.deviation(facet))
+            .fold(0.0, f64::max)
     }
 
     /// The half-edge that leaves a vertex along a B-Rep edge with this face to the left.
@@ -321,9 +342,10 @@ impl<'a> Run<'a> {
         .unwrap_or(NONE)
     }
 
-    /// The boundary as triangles, or the faces that did not come out well.
-    fn facets(&self) -> Result<Fragments, Vec<usize>> {
-        let mut troubled = self.troubled();
+    /// The boundary as triangles, within `tolerance` of the surfaces, or the faces that did not
+    /// come out well, each with what its tolerance should be multiplied by.
+    fn facets(&self, tolerance: f64) -> Result<Fragments, Vec<(usize, f64)>> {
+        let mut troubled = self.troubled(tolerance);
         let mut loops: Vec<Vec<Vec<u32>>> = vec![Vec::new(); self.sheets.len()];
         for (phantom, &role) in (0_u32..).zip(&self.mesh.roles) {
             if role != Role::Phantom {
@@ -354,17 +376,18 @@ impl<'a> Run<'a> {
             }
             match fill_loops(loops, &self.mesh.positions, normals[face]) {
                 Ok(triangles) => of_face[face] = triangles,
-                Err(_) => troubled.push(face),
+                Err(_) => troubled.push((face, FINER)),
             }
         }
         if !troubled.is_empty() {
-            troubled.sort_unstable();
-            troubled.dedup();
+            // Of several reasons in one face the graver one counts.
+            troubled.sort_by(|(f, x), (g, y)| f.cmp(g).then(x.total_cmp(y)));
+            troubled.dedup_by_key(|(face, _)| *face);
             return Err(troubled);
         }
         let crossing = self.crossing_faces(&of_face);
         if !crossing.is_empty() {
-            return Err(crossing);
+            return Err(crossing.into_iter().map(|face| (face, FINER)).collect());
         }
         let mut triangles = Vec::new();
         for (face, corners) in self.groups.faces.iter().zip(of_face) {

@@ -86,6 +86,18 @@ impl<'a> Sheet<'a> {
         matches!(self, Self::Plane { .. })
     }
 
+    /// Whether distances along a chord follow a parabola.
+    pub(super) fn is_quadric(&self) -> bool {
+        match self {
+            Self::Plane { .. }
+            | Self::Sphere { .. }
+            | Self::Cylinder { .. }
+            | Self::Cone { .. } => true,
+            Self::Torus { .. } => false,
+            Self::Implicit { polynomial, .. } => polynomial.degree() <= 2,
+        }
+    }
+
     /// Distance from the surface, signed, and the unit normal there (to the first order for
     /// implicit surfaces). The normal is zero where there is none.
     pub(super) fn at(&self, p: DVec3) -> (f64, DVec3) {
@@ -150,7 +162,7 @@ impl<'a> Sheet<'a> {
     }
 
     /// The distance that [`Self::at`] gives, without the normal.
-    fn distance(&self, p: DVec3) -> f64 {
+    pub(super) fn distance(&self, p: DVec3) -> f64 {
         match *self {
             Self::Plane { normal, offset } => normal.dot(p) - offset,
             Self::Sphere { center, radius } => p.distance(center) - radius,
@@ -204,10 +216,12 @@ impl<'a> Sheet<'a> {
     /// along a chord is a parabola, so that its middle says all; others are looked at thrice.
     pub(super) fn chord_error(&self, a: DVec3, b: DVec3) -> f64 {
         let at = |t: f64| self.distance(a.lerp(b, t)).abs();
-        match self {
-            Self::Plane { .. } => 0.0,
-            Self::Sphere { .. } | Self::Cylinder { .. } | Self::Cone { .. } => at(0.5),
-            Self::Torus { .. } | Self::Implicit { .. } => at(0.5).max(at(0.25)).max(at(0.75)),
+        if self.is_plane() {
+            0.0
+        } else if self.is_quadric() {
+            at(0.5)
+        } else {
+            at(0.5).max(at(0.25)).max(at(0.75))
         }
     }
 }
