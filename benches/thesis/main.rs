@@ -3,11 +3,13 @@
 //! ```text
 //! cargo bench --bench thesis
 //! cargo bench --bench thesis -- rays
+//! cargo bench --bench thesis -- reduction
 //! ```
 //!
 //! One thread. `docs/thesis.md` says what the figures mean.
 
 mod rays;
+mod reduction;
 mod solids;
 
 use csg::{Polynomial, Primitive, Solid};
@@ -24,9 +26,14 @@ fn main() {
     if std::env::args().any(|a| a == "--list" || a == "--test") {
         return;
     }
-    if std::env::args().any(|a| a == "rays") {
-        rays::table();
-        return;
+    for (name, table) in [
+        ("rays", rays::table as fn()),
+        ("reduction", reduction::table),
+    ] {
+        if std::env::args().any(|a| a == name) {
+            table();
+            return;
+        }
     }
     conversion();
     refinement();
@@ -34,6 +41,7 @@ fn main() {
     boxes();
     criteria();
     rays::table();
+    reduction::table();
 }
 
 /// The shortest of some runs, in seconds.

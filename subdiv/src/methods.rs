@@ -15,9 +15,10 @@ mod adaptive;
 mod complete;
 mod continuation;
 mod cube;
+mod reduction;
 mod signs;
 
-pub use adaptive::{Adaptive, Halt, adaptive};
+pub use adaptive::{Adaptive, Halt, adaptive, adaptive_reduced};
 pub use complete::{Complete, complete};
 pub use continuation::{Continuation, continuation};
 pub use cube::{CubeCut, Pattern};

@@ -1,8 +1,10 @@
 //! The adaptive simplicial subdivision (SSA) as [`convert`](crate::convert()) walks it, counted
 //! the way the thesis counts.
 
+use super::reduction::Reducer;
 use super::signs::{Judge, value};
 use super::{Cell, Found};
+use crate::bernstein::count;
 use crate::blossom::RootCoefficients;
 use crate::classify::Criterion;
 use crate::simplex::Simplex;
@@ -34,6 +36,8 @@ pub struct Adaptive {
     /// Evaluations by de Casteljau: at the roots one for each primitive, and one at the middle of
     /// the refinement edge, which serves both children.
     pub evaluations: u64,
+    /// Bernstein coefficients halved.
+    pub coefficients: u64,
     /// Simplices bisected although none of their descendants is F-intersecting ("Sub. Indev.").
     pub wrongly_bisected: u64,
 }
@@ -41,6 +45,32 @@ pub struct Adaptive {
 /// Subdivides down to `level` (at most [`MAX_LEVEL`](crate::MAX_LEVEL)).
 #[must_use]
 pub fn adaptive(solid: &Solid, criterion: Criterion, level: u8, halt: Halt) -> Adaptive {
+    run(solid, criterion, level, halt, None)
+}
+
+/// As [`adaptive()`], with degrees lowered on the way (thesis 6.3.2): in a simplex whose edges are
+/// k times those of the smallest ones, a polynomial may be off by `allowed`/k times the width of
+/// its range there, so that its zero set stays within about `allowed` of a smallest simplex.
+#[must_use]
+pub fn adaptive_reduced(
+    solid: &Solid,
+    criterion: Criterion,
+    level: u8,
+    halt: Halt,
+    allowed: f64,
+) -> Adaptive {
+    let degrees = solid.primitives.iter().map(|p| p.polynomial.degree());
+    let reducer = Reducer::new(degrees.max().unwrap_or(0), level, allowed);
+    run(solid, criterion, level, halt, Some(reducer))
+}
+
+fn run(
+    solid: &Solid,
+    criterion: Criterion,
+    level: u8,
+    halt: Halt,
+    reducer: Option<Reducer>,
+) -> Adaptive {
     let level = level.min(crate::MAX_LEVEL);
     let primitives = solid.primitives.len();
     let roots: Vec<_> = solid.primitives.iter().map(RootCoefficients::new).collect();
@@ -58,6 +88,7 @@ pub fn adaptive(solid: &Solid, criterion: Criterion, level: u8, halt: Halt) -> A
         halt,
         judge: Judge::new(primitives),
         open: Vec::new(),
+        reducer,
     };
     for sector in walker.roots(solid, &roots) {
         walker.walk(&sector, &mut count);
@@ -79,6 +110,7 @@ struct Count {
     halt: Halt,
     judge: Judge,
     open: Vec<Open>,
+    reducer: Option<Reducer>,
 }
 
 impl Visitor for Count {
@@ -88,6 +120,10 @@ impl Visitor for Count {
         if is_leaf {
             self.leaf(simplex, frame);
         } else {
+            // A term of highest degree shrinks in three levels, when simplices are halved.
+            if let Some(reducer) = self.reducer.as_mut().filter(|_| simplex.kind() == 0) {
+                reducer.reduce(simplex.level, frame);
+            }
             self.bisection(frame);
             let level = simplex.level;
             self.open.push(Open {
@@ -127,6 +163,7 @@ impl Count {
         self.done.classifications += 2 * frame.active.len() as u64;
         self.done.evaluations += frame.active.len() as u64;
         for active in &frame.active {
+            self.done.coefficients += count(active.degree as usize) as u64;
             let [v0, v1, v2, v3] = frame.values_of(active).map(|v| v <= 0.0);
             self.done.doubtful += u64::from(v1 == v2 && v0 == v1);
             self.done.doubtful += u64::from(v1 == v2 && v3 == v1);
