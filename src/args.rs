@@ -273,6 +273,13 @@ pub(crate) struct InfoArgs {
     /// Print JSON
     #[arg(long)]
     pub(crate) json: bool,
+    #[command(flatten)]
+    pub(crate) clip: ClipArgs,
+}
+
+/// The part of space that counts.
+#[derive(Args, Debug)]
+pub(crate) struct ClipArgs {
     /// Clip the model to this box; needed if it is unbounded
     #[arg(
         long = "box",
@@ -280,7 +287,7 @@ pub(crate) struct InfoArgs {
         allow_negative_numbers = true,
         value_names = ["XMIN", "YMIN", "ZMIN", "XMAX", "YMAX", "ZMAX"]
     )]
-    pub(crate) clip: Option<Vec<f64>>,
+    pub(crate) corners: Option<Vec<f64>>,
 }
 
 /// A model or mesh to measure.

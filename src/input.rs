@@ -1,7 +1,10 @@
 //! From a file or standard input to a model.
 
-use crate::args::InputFormat;
+use crate::args::{ClipArgs, InputFormat};
 use crate::failure::Failure;
+use crate::run::clip_box;
+use crate::talk::Talk;
+use csg::Solid;
 use io::read::format::{Format, sniff};
 use io::read::{Diagnostic, ReadOptions, Reading, decode, scad_csg};
 use io::thesis::solid::{self, MatrixForm};
@@ -76,6 +79,18 @@ impl Input {
     ) -> Result<Loaded, Failure> {
         let (bytes, format) = self.open(format)?;
         self.parse(bytes, format, options, Operators::default())
+    }
+
+    /// The solid of the model, and what it was read from; warnings are said.
+    pub(crate) fn solid(&self, clip: &ClipArgs, talk: Talk) -> Result<(Solid, Loaded), Failure> {
+        let clip = clip.corners.as_deref().map(clip_box).transpose()?;
+        let loaded = self.load(None, ReadOptions::default())?;
+        for warning in &loaded.warnings {
+            talk.warn_about(warning, &loaded.source);
+        }
+        let solid = Solid::build(&loaded.model, clip);
+        let solid = solid.map_err(|error| Failure::from(error).of_input(&self.name()))?;
+        Ok((solid, loaded))
     }
 
     /// The model in a file's content.

@@ -72,6 +72,6 @@ pub use shapes::{
     Torus,
 };
 pub use solid::{Material, NearlyEqual, Primitive, Solid};
-pub use surface::{QuadricKind, Surface};
+pub use surface::{QuadricForm, QuadricKind, Surface};
 pub use ternary::{LocalizeScratch, Ternary, localize};
 pub use transform::Transform;

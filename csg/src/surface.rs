@@ -1,11 +1,17 @@
 //! What surface a polynomial describes: the inverse of the shapes' constructions.
 //!
 //! Quadrics are told apart by their principal axes: the eigenvalues of the quadratic part, then
-//! what is left after completing squares. Numbers count as zero when the polynomial's own
-//! coefficient error may have made them.
+//! what is left after completing squares. A number that is larger than what the polynomial's own
+//! coefficient error can make of zero has its sign for certain; a smaller one counts as zero. So
+//! classes that no small change of coefficients can leave (ellipsoids, hyperboloids) are proved,
+//! and of the others (cones, cylinders, spheres, planes …) it is proved that the coefficients
+//! agree with such a surface within their error.
 
 mod quadric;
+mod quadric_form;
 mod torus;
+
+pub use quadric_form::QuadricForm;
 
 use crate::{Domain, Polynomial, Primitive};
 use glam::DVec3;
@@ -59,7 +65,7 @@ pub enum Surface {
         tube: f64,
     },
     /// Any other surface of degree 2.
-    Quadric(QuadricKind),
+    Quadric(QuadricForm),
     /// Any other surface of this degree.
     Algebraic {
         /// Degree of the polynomial.
@@ -69,7 +75,8 @@ pub enum Surface {
     Constant,
 }
 
-/// The classes of real quadrics that have no [`Surface`] of their own.
+/// The classes of quadrics that have no [`Surface`] of their own; their equations are in
+/// [`QuadricForm`].
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub enum QuadricKind {
     /// An ellipsoid that is no sphere.
@@ -100,8 +107,12 @@ pub enum QuadricKind {
     Line,
     /// A single point, the apex of an imaginary cone.
     Point,
-    /// No real point at all.
-    Imaginary,
+    /// No real point: the sum of three squares is negative.
+    ImaginaryEllipsoid,
+    /// No real point: the sum of two squares is negative.
+    ImaginaryCylinder,
+    /// No real point: a square is negative.
+    ImaginaryPlanes,
 }
 
 impl Primitive {
@@ -179,7 +190,8 @@ impl Surface {
                 ring: ring * size,
                 tube: tube * size,
             },
-            Self::Quadric(_) | Self::Algebraic { .. } | Self::Constant => self,
+            Self::Quadric(form) => Self::Quadric(form.in_model(domain)),
+            Self::Algebraic { .. } | Self::Constant => self,
         }
     }
 }

@@ -1,15 +1,15 @@
 //! `csg2brep thesis compare IN --level N`: the methods of thesis 6.2.2 and the criteria of 4.4 on
 //! one model.
 
+use crate::args::ClipArgs;
 use crate::failure::Failure;
 use crate::input::Input;
 use crate::output;
-use crate::run::{Target, clip_box};
+use crate::run::Target;
 use crate::summary::grouped;
 use crate::talk::Talk;
 use clap::Args;
 use csg::Solid;
-use io::read::ReadOptions;
 use std::path::PathBuf;
 use std::time::Instant;
 use subdiv::Criterion;
@@ -39,26 +39,14 @@ pub(crate) struct CompareArgs {
     /// the regular methods are not run
     #[arg(long)]
     stop_at_planes: bool,
-    /// Clip the model to this box; needed if it is unbounded
-    #[arg(
-        long = "box",
-        num_args = 6,
-        allow_negative_numbers = true,
-        value_names = ["XMIN", "YMIN", "ZMIN", "XMAX", "YMAX", "ZMAX"]
-    )]
-    clip: Option<Vec<f64>>,
+    #[command(flatten)]
+    clip: ClipArgs,
 }
 
 /// Prints the table on standard output.
 pub(crate) fn run(args: CompareArgs, talk: Talk) -> Result<(), Failure> {
     let input = Input::new(args.input);
-    let clip = args.clip.as_deref().map(clip_box).transpose()?;
-    let loaded = input.load(None, ReadOptions::default())?;
-    for warning in &loaded.warnings {
-        talk.warn_about(warning, &loaded.source);
-    }
-    let solid = Solid::build(&loaded.model, clip);
-    let solid = solid.map_err(|error| Failure::from(error).of_input(&input.name()))?;
+    let (solid, _) = input.solid(&args.clip, talk)?;
     let halt = if args.stop_at_planes {
         Halt::AtPlanes
     } else {

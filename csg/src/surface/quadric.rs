@@ -1,6 +1,6 @@
 //! Surfaces of degree 2.
 
-use super::{QuadricKind, Surface};
+use super::{QuadricForm, QuadricKind, Surface};
 use crate::Polynomial;
 use crate::bounds::symmetric_eigen;
 use glam::{DMat3, DVec3};
@@ -51,7 +51,11 @@ pub(super) fn classify(p: &Polynomial, error: f64) -> Surface {
         } else {
             0.0
         },
-        is_sloped: slope.length() > allowed,
+        slope: if slope.length() > allowed {
+            slope
+        } else {
+            DVec3::ZERO
+        },
         allowed,
     };
     match curved.iter().filter(|&&curved| curved).count() {
@@ -61,24 +65,50 @@ pub(super) fn classify(p: &Polynomial, error: f64) -> Surface {
     }
 }
 
-/// Σ values[k] yₖ² + level, with y from the centre along the axes, plus a linear term if sloped.
+/// Σ values[k] yₖ² + 2 slope·y + level, with y from the centre along the axes.
 struct Form {
     values: DVec3,
     axes: DMat3,
     curved: [bool; 3],
     center: DVec3,
     level: f64,
-    is_sloped: bool,
+    /// Half the linear term, along axes that are not curved.
+    slope: DVec3,
     allowed: f64,
 }
 
 impl Form {
+    fn axes(&self) -> [DVec3; 3] {
+        [0, 1, 2].map(|k| self.axes.col(k))
+    }
+
+    /// Square roots of |level / values[k]|, 0 along axes that are not curved.
+    fn semi_axes(&self) -> [f64; 3] {
+        [0, 1, 2].map(|k| {
+            if self.curved[k] {
+                (self.level / self.values[k]).abs().sqrt()
+            } else {
+                0.0
+            }
+        })
+    }
+
+    /// With the axis of index `special` as z.
+    fn around(&self, kind: QuadricKind, special: usize, sizes: [f64; 3]) -> Surface {
+        let form = QuadricForm::around(kind, self.center, self.axes(), special, sizes);
+        Surface::Quadric(form)
+    }
+
     /// Three curved axes: ellipsoids, hyperboloids, cones.
     fn central(&self) -> Surface {
+        let sizes = self.semi_axes();
+        let smallest = (1..3).fold(0, |s, k| if sizes[k] < sizes[s] { k } else { s });
         let positive = (0..3).filter(|&k| self.values[k] > 0.0).count();
-        let kind = match (positive, self.level) {
-            (0 | 3, 0.0) => QuadricKind::Point,
-            (0 | 3, level) if (level > 0.0) == (positive == 3) => QuadricKind::Imaginary,
+        match (positive, self.level) {
+            (0 | 3, 0.0) => self.point(),
+            (0 | 3, level) if (level > 0.0) == (positive == 3) => {
+                self.around(QuadricKind::ImaginaryEllipsoid, smallest, sizes)
+            }
             (0 | 3, level) => {
                 let mean = self.values.element_sum() / 3.0;
                 if (self.values - mean).abs().max_element() <= self.allowed {
@@ -87,25 +117,41 @@ impl Form {
                         radius: (-level / mean).sqrt(),
                     };
                 }
-                QuadricKind::Ellipsoid
+                self.around(QuadricKind::Ellipsoid, smallest, sizes)
             }
-            (_, 0.0) => return self.cone(positive),
-            (2, level) if level < 0.0 => QuadricKind::HyperboloidOfOneSheet,
-            (1, level) if level > 0.0 => QuadricKind::HyperboloidOfOneSheet,
-            _ => QuadricKind::HyperboloidOfTwoSheets,
-        };
-        Surface::Quadric(kind)
+            (_, 0.0) => self.cone(self.lonely(positive)),
+            // Two of the signs are those of the level in two sheets, one in one sheet.
+            (_, level) => {
+                let kind = if (positive == 2) == (level < 0.0) {
+                    QuadricKind::HyperboloidOfOneSheet
+                } else {
+                    QuadricKind::HyperboloidOfTwoSheets
+                };
+                self.around(kind, self.lonely(positive), sizes)
+            }
+        }
     }
 
-    /// The axis is the one whose eigenvalue has a sign of its own.
-    fn cone(&self, positive: usize) -> Surface {
-        let is_axis = |k: &usize| (self.values[*k] > 0.0) == (positive == 1);
-        let Some(k) = (0..3).find(is_axis) else {
-            return Surface::Quadric(QuadricKind::Point);
-        };
+    /// The axis whose eigenvalue has a sign of its own, of which one or two are positive.
+    fn lonely(&self, positive: usize) -> usize {
+        let is_lonely = |k: &usize| (self.values[*k] > 0.0) == (positive == 1);
+        (0..3).find(is_lonely).unwrap_or(0)
+    }
+
+    /// An imaginary cone, along its steepest axis.
+    fn point(&self) -> Surface {
+        let v = self.values.abs();
+        let steepest = v.max_position();
+        let sizes = [0, 1, 2].map(|k| (v[steepest] / v[k]).sqrt());
+        self.around(QuadricKind::Point, steepest, sizes)
+    }
+
+    /// With the axis of index `k`.
+    fn cone(&self, k: usize) -> Surface {
         let across = [self.values[(k + 1) % 3], self.values[(k + 2) % 3]];
         if (across[0] - across[1]).abs() > self.allowed {
-            return Surface::Quadric(QuadricKind::EllipticCone);
+            let tangents = [0, 1, 2].map(|j| (self.values[k] / self.values[j]).abs().sqrt());
+            return self.around(QuadricKind::EllipticCone, k, tangents);
         }
         // across · ρ² = −values[k] · z²
         let mean = 0.5 * (across[0] + across[1]);
@@ -119,38 +165,96 @@ impl Form {
     /// Two curved axes: paraboloids, cylinders, crossing planes.
     fn over_conic(&self) -> Surface {
         let straight = (0..3).find(|&k| !self.curved[k]).unwrap_or(0);
-        let [a, b] = [1, 2].map(|step| self.values[(straight + step) % 3]);
+        let [i, j] = [(straight + 1) % 3, (straight + 2) % 3];
+        let [a, b] = [self.values[i], self.values[j]];
         let is_elliptic = (a > 0.0) == (b > 0.0);
-        let kind = match (self.is_sloped, is_elliptic, self.level) {
-            (true, true, _) => QuadricKind::EllipticParaboloid,
-            (true, false, _) => QuadricKind::HyperbolicParaboloid,
-            (false, true, 0.0) => QuadricKind::Line,
-            (false, false, 0.0) => QuadricKind::CrossingPlanes,
-            (false, false, _) => QuadricKind::HyperbolicCylinder,
-            (false, true, level) if (level > 0.0) == (a > 0.0) => QuadricKind::Imaginary,
-            (false, true, level) if (a - b).abs() <= self.allowed => {
-                return Surface::Cylinder {
-                    point: self.center,
-                    axis: self.axes.col(straight),
-                    radius: (-level / (0.5 * (a + b))).sqrt(),
-                };
-            }
-            (false, true, _) => QuadricKind::EllipticCylinder,
+        if self.slope != DVec3::ZERO {
+            return self.paraboloid([i, j], is_elliptic);
+        }
+        let sizes = self.semi_axes();
+        let z = self.axes.col(straight);
+        let along = |kind, x: usize, sizes| {
+            let form = QuadricForm::new(kind, self.center, self.axes.col(x), z, sizes);
+            Surface::Quadric(form)
         };
-        Surface::Quadric(kind)
+        match (is_elliptic, self.level) {
+            (true, 0.0) => {
+                // x is the flatter direction.
+                let [x, y] = if a.abs() < b.abs() { [i, j] } else { [j, i] };
+                let ratio = (self.values[y] / self.values[x]).sqrt();
+                along(QuadricKind::Line, x, [ratio, 0.0, 0.0])
+            }
+            (false, 0.0) => {
+                let [x, y] = if a.abs() < b.abs() { [i, j] } else { [j, i] };
+                let half_angle_rad = (self.values[x] / self.values[y]).abs().sqrt().atan();
+                along(QuadricKind::CrossingPlanes, x, [half_angle_rad, 0.0, 0.0])
+            }
+            (false, level) => {
+                let [x, y] = if (a > 0.0) == (level < 0.0) {
+                    [i, j]
+                } else {
+                    [j, i]
+                };
+                let sizes = [sizes[x], sizes[y], 0.0];
+                along(QuadricKind::HyperbolicCylinder, x, sizes)
+            }
+            (true, level) if (level > 0.0) == (a > 0.0) => {
+                self.around(QuadricKind::ImaginaryCylinder, straight, sizes)
+            }
+            (true, level) if (a - b).abs() <= self.allowed => Surface::Cylinder {
+                point: self.center,
+                axis: z,
+                radius: (-level / (0.5 * (a + b))).sqrt(),
+            },
+            (true, _) => self.around(QuadricKind::EllipticCylinder, straight, sizes),
+        }
+    }
+
+    /// Two curved axes, and a slope along the third: Σ values y² = −2 |slope| (t − t₀).
+    fn paraboloid(&self, curved: [usize; 2], is_elliptic: bool) -> Surface {
+        let radius = |k: usize| self.slope.length() / self.values[k].abs();
+        let [i, j] = curved;
+        let [x, y] = if radius(i) < radius(j) {
+            [j, i]
+        } else {
+            [i, j]
+        };
+        let kind = if is_elliptic {
+            QuadricKind::EllipticParaboloid
+        } else {
+            QuadricKind::HyperbolicParaboloid
+        };
+        let sizes = [radius(x), radius(y), 0.0];
+        self.sloped(kind, x, sizes)
+    }
+
+    /// A vertex where the level is reached along the slope; z is where the curve along x opens.
+    fn sloped(&self, kind: QuadricKind, x: usize, sizes: [f64; 3]) -> Surface {
+        let length = self.slope.length();
+        let direction = self.slope / length;
+        let vertex = self.center - direction * (self.level / (2.0 * length));
+        let z = -direction * self.values[x].signum();
+        let form = QuadricForm::new(kind, vertex, self.axes.col(x), z, sizes);
+        Surface::Quadric(form)
     }
 
     /// One curved axis: parabolic cylinders, parallel planes.
     fn over_points(&self) -> Surface {
-        let curved = (0..3).find(|&k| self.curved[k]).unwrap_or(0);
-        Surface::Quadric(if self.is_sloped {
-            QuadricKind::ParabolicCylinder
-        } else if self.level == 0.0 {
+        let x = (0..3).find(|&k| self.curved[k]).unwrap_or(0);
+        if self.slope != DVec3::ZERO {
+            let radius = self.slope.length() / self.values[x].abs();
+            return self.sloped(QuadricKind::ParabolicCylinder, x, [radius, 0.0, 0.0]);
+        }
+        let kind = if self.level == 0.0 {
             QuadricKind::DoublePlane
-        } else if (self.level > 0.0) == (self.values[curved] > 0.0) {
-            QuadricKind::Imaginary
+        } else if (self.level > 0.0) == (self.values[x] > 0.0) {
+            QuadricKind::ImaginaryPlanes
         } else {
             QuadricKind::ParallelPlanes
-        })
+        };
+        let (size, z) = (self.semi_axes()[x], self.axes.col((x + 2) % 3));
+        let direction = self.axes.col(x);
+        let form = QuadricForm::new(kind, self.center, direction, z, [size, 0.0, 0.0]);
+        Surface::Quadric(form)
     }
 }

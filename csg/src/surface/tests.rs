@@ -1,3 +1,5 @@
+mod quadrics;
+
 use super::*;
 use crate::{ModelBuilder, Node, Shape, Solid, Transform};
 use proptest::prelude::*;
@@ -99,59 +101,4 @@ proptest! {
         prop_assert!((center - at).length() < NEAR && parallel(axis, along));
         prop_assert!((ring - 1.0).abs() < NEAR && (tube - r).abs() < NEAR);
     }
-
-    #[test]
-    fn quadrics_have_their_classes(motion in motion(), case in 0..CASES.len()) {
-        let (diagonal, linear, constant, kind) = CASES[case];
-        let [a, b, c] = diagonal;
-        let p = Polynomial::quadric(&[
-            [a, 0.0, 0.0, 0.0],
-            [0.0, b, 0.0, 0.0],
-            [0.0, 0.0, c, linear],
-            [0.0, 0.0, 0.0, constant],
-        ]);
-        let inverse = motion.inverse();
-        let moved = p.and_then(|p| p.substituted(&inverse.to_rows())).expect("finite");
-        let scale = moved.max_abs();
-        let primitive = Primitive {
-            polynomial: moved.scaled(1.0 / scale).expect("finite"),
-            coefficient_error: 1e-14,
-        };
-        let domain = Domain::around(&crate::Aabb { min: DVec3::ZERO, max: DVec3::ONE });
-        prop_assert_eq!(primitive.surface(&domain), Surface::Quadric(kind));
-    }
 }
-
-/// Diagonal quadratic part, coefficient of z, constant.
-const CASES: [([f64; 3], f64, f64, QuadricKind); 15] = [
-    ([1.0, 2.0, 3.0], 0.0, -1.0, QuadricKind::Ellipsoid),
-    ([1.0, 2.0, 0.0], 0.0, -1.0, QuadricKind::EllipticCylinder),
-    ([1.0, 2.0, -1.0], 0.0, 0.0, QuadricKind::EllipticCone),
-    ([1.0, -2.0, 0.0], 0.0, -1.0, QuadricKind::HyperbolicCylinder),
-    ([1.0, 0.0, 0.0], 1.0, 0.5, QuadricKind::ParabolicCylinder),
-    ([1.0, 1.0, 0.0], -1.0, 0.0, QuadricKind::EllipticParaboloid),
-    (
-        [1.0, -1.0, 0.0],
-        1.0,
-        0.0,
-        QuadricKind::HyperbolicParaboloid,
-    ),
-    (
-        [1.0, 1.0, -1.0],
-        0.0,
-        -1.0,
-        QuadricKind::HyperboloidOfOneSheet,
-    ),
-    (
-        [1.0, 1.0, -1.0],
-        0.0,
-        1.0,
-        QuadricKind::HyperboloidOfTwoSheets,
-    ),
-    ([1.0, -2.0, 0.0], 0.0, 0.0, QuadricKind::CrossingPlanes),
-    ([1.0, 0.0, 0.0], 0.0, -1.0, QuadricKind::ParallelPlanes),
-    ([1.0, 0.0, 0.0], 0.0, 0.0, QuadricKind::DoublePlane),
-    ([1.0, 2.0, 0.0], 0.0, 0.0, QuadricKind::Line),
-    ([1.0, 2.0, 3.0], 0.0, 0.0, QuadricKind::Point),
-    ([1.0, 2.0, 3.0], 0.0, 1.0, QuadricKind::Imaginary),
-];
