@@ -12,7 +12,7 @@
 
 use crate::lattice::Point;
 use crate::leaf_formula::Pattern;
-use crate::predicates::{Minor, Sign, minor_sign, vertex_sign};
+use crate::predicates::{Minor, Sign, clear_sign, minor_sign, vertex_sign};
 use rustc_hash::FxHashMap;
 
 /// Number of the first facet's plane.
@@ -102,11 +102,34 @@ impl Arrangement {
         &self.sides[cell.start as usize..(cell.start + cell.len) as usize]
     }
 
-    /// Cuts the polygon of primitive `own` by all others.
-    pub(crate) fn arrange(&mut self, planes: &Planes<'_>, own: usize) {
+    /// Begins with the whole polygon of primitive `own`; returns the others inside and those
+    /// outside of which it lies.
+    pub(crate) fn begin(&mut self, planes: &Planes<'_>, own: usize) -> [Pattern; 2] {
         self.start_polygon(planes, own);
+        let [mut inside, mut outside]: [Pattern; 2] = [0; 2];
+        for other in (0..planes.primitives.len()).filter(|other| *other != own) {
+            self.cut += 1;
+            let mut signs = [false; 2];
+            for at in 0..self.sides.len() {
+                let sign = self.side_of(planes, self.sides[at].from, other);
+                signs[usize::from(sign == Sign::Negative)] = true;
+            }
+            match signs {
+                [false, true] => inside |= 1 << other,
+                [true, false] => outside |= 1 << other,
+                _ => {}
+            }
+        }
+        for cell in &mut self.cells {
+            cell.pattern = inside;
+        }
+        [inside, outside]
+    }
+
+    /// Cuts the polygon of primitive `own` by those in `cutters`.
+    pub(crate) fn cut(&mut self, planes: &Planes<'_>, own: usize, cutters: Pattern) {
         for other in 0..planes.primitives.len() {
-            if other != own {
+            if cutters >> other & 1 == 1 {
                 self.cut_cells(planes, own, other);
             }
         }
@@ -237,6 +260,16 @@ impl Arrangement {
             normalization,
             ..
         } = &self.vertices[vertex as usize];
+        if let (&[row], &[a, b]) = (&rows[..], &columns[..]) {
+            // On an edge of the simplex: most of all calls, and few are close.
+            let (own, across) = (&planes.values[row], &planes.values[other]);
+            let (p, q) = (own[a] * across[b], own[b] * across[a]);
+            if let Some(sign) = clear_sign(p - q, p.abs() + q.abs()) {
+                let sign = sign.times(*normalization);
+                self.cut_sign[vertex as usize] = (self.cut, sign);
+                return sign;
+            }
+        }
         let mut minor = select(planes, rows, columns);
         minor.order += 1;
         minor.rows[minor.order - 1] = planes.primitives[other];

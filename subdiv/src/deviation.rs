@@ -31,6 +31,13 @@ const CROWD: usize = 8;
 /// Most primitives that a leaf's formula needs in both senses.
 const MOST_TWO_SIDED: usize = 3;
 
+/// Most planes of a leaf that nothing curved crosses, and most pairs of them that cross there.
+/// More would be arranged as exactly, but it takes less time to bisect.
+const MOST_PLANES: usize = 48;
+
+/// See [`MOST_PLANES`].
+const MOST_CROSSINGS: usize = 100;
+
 /// Part of the tolerance that is left for the rounding of positions.
 const ROUNDING_SHARE: f64 = 1e-6;
 
@@ -80,7 +87,51 @@ impl DeviationRule {
         let mut near = std::mem::take(&mut self.near);
         let result = self.test_near(plan, margin, simplex, frame, (&place, &mut near));
         self.near = near;
-        result
+        result.or_else(|reason| self.test_planes(plan, frame, &place).ok_or(reason))
+    }
+
+    /// Planes are their own interpolants and are arranged exactly: where nothing else matters,
+    /// the mesh is the true boundary but for rounding.
+    fn test_planes(&mut self, plan: &Plan<'_>, frame: &Frame, place: &Place) -> Option<Proved> {
+        let mut needed = ArrayVec::<u32, MOST_PLANES>::new();
+        for node in frame.formula_within() {
+            if let FormulaNode::Literal(literal) = node
+                && !needed.contains(&literal.primitive.0)
+            {
+                needed.try_push(literal.primitive.0).ok()?;
+            }
+        }
+        let around = Around {
+            radius: place.tolerance,
+            both_ways: false,
+            rate: place.rate,
+        };
+        let mut distance = 0.0f64;
+        let mut values = ArrayVec::<[f64; 4], MOST_PLANES>::new();
+        let mut crossings = 0;
+        for active in frame
+            .active
+            .iter()
+            .filter(|a| needed.contains(&a.primitive))
+        {
+            if active.degree > 1 {
+                return None;
+            }
+            let own = frame.values_of(active);
+            crossings += values.iter().filter(|other| may_cross(&own, other)).count();
+            if crossings > MOST_CROSSINGS {
+                return None;
+            }
+            values.push(own);
+            let coefficients = frame.coefficients_of(active);
+            let control = &mut self.control;
+            let sheet = Sheet::new(&plan.tables, active, coefficients, place, None, control)?;
+            distance = distance.max(sheet.reach(1.0, &around)?);
+        }
+        Some(Proved {
+            distance,
+            both_ways: false,
+        })
     }
 
     /// `near`: work space.
@@ -314,6 +365,13 @@ fn is_near(
     let class = classify(Criterion::Bezier, simplex.kind(), degree, coefficients, 0.0);
     let place = (place.rate, &place.gradients);
     !margin.keeps_sign(around.radius, place, active, coefficients, &class)
+}
+
+/// Whether two planes, given by their values at a simplex' vertices, cross in it: whether no
+/// combination of the two is positive at all vertices.
+fn may_cross(p: &[f64; 4], q: &[f64; 4]) -> bool {
+    let turn = |a: usize, b: usize| p[a] * q[b] - p[b] * q[a];
+    !(0..4).any(|a| (0..4).all(|b| a == b || turn(a, b) > 0.0))
 }
 
 fn weight(sheet: &Sheet) -> f64 {

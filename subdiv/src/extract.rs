@@ -170,7 +170,19 @@ impl Extractor {
 
     fn extract_polygon(&mut self, leaf: &Leaf<'_>, own: usize, mesh: &mut MeshBuilder) {
         let mut arrangement = std::mem::take(&mut self.arrangement);
-        arrangement.arrange(&leaf.planes, own);
+        let [inside, outside] = arrangement.begin(&leaf.planes, own);
+        let crossing = !(inside | outside | 1 << own);
+        let cutters = if leaf.is_curved() {
+            // Vertices are held to the right side of all others.
+            Some(crossing)
+        } else {
+            self.formula.deciding(own, inside, outside)
+        };
+        let Some(cutters) = cutters else {
+            self.arrangement = arrangement;
+            return;
+        };
+        arrangement.cut(&leaf.planes, own, cutters & crossing);
         self.complex
             .link(&arrangement, |pattern| self.formula.label(own, pattern));
         let polygon = LeafPolygon {

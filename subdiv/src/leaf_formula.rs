@@ -28,6 +28,8 @@ pub(crate) struct LeafFormula {
     pub primitives: Vec<u32>,
     /// The only material of each local primitive's literals, if it is one only.
     single_material: Vec<Option<MaterialId>>,
+    /// Those with literals of both senses.
+    two_sided: Pattern,
     /// All values, for as many primitives as patterns have.
     table: Patterns,
     open: Vec<(usize, Patterns)>,
@@ -50,7 +52,7 @@ impl LeafFormula {
         self.nodes.clear();
         self.single_material.clear();
         self.single_material.resize(self.primitives.len(), None);
-        let mut seen: Pattern = 0;
+        let mut seen = [0 as Pattern; 2];
         for node in nodes {
             let FormulaNode::Literal(literal) = *node else {
                 self.nodes.push(*node);
@@ -61,17 +63,18 @@ impl LeafFormula {
                 .binary_search(&literal.primitive.0)
                 .unwrap_or(0);
             let bit = 1 << (local % MAX_LEAF_PRIMITIVES);
-            if seen & bit == 0 {
+            if (seen[0] | seen[1]) & bit == 0 {
                 self.single_material[local] = Some(literal.material);
             } else if self.single_material[local] != Some(literal.material) {
                 self.single_material[local] = None;
             }
-            seen |= bit;
+            seen[usize::from(literal.sense == Sense::Inside)] |= bit;
             self.nodes.push(FormulaNode::Literal(Literal {
                 primitive: PrimitiveId(local as u32),
                 ..literal
             }));
         }
+        self.two_sided = seen[0] & seen[1];
         if self.primitives.len() <= CROWD {
             self.table = Patterns::of_formula(&self.nodes, |local| local as usize, &mut self.open);
         }
@@ -81,6 +84,57 @@ impl LeafFormula {
     #[must_use]
     pub(crate) fn len(&self) -> usize {
         self.primitives.len()
+    }
+
+    /// Whether the material of a face may depend on where it is.
+    #[must_use]
+    pub(crate) fn has_mixed_materials(&self) -> bool {
+        self.single_material.contains(&None)
+    }
+
+    /// The primitives that tell where on primitive `local` the boundary lies, where those in
+    /// `inside` and `outside` are known to be so; `None` if there is no boundary.
+    ///
+    /// All of those not known are named where `local` and one of them have literals of both
+    /// senses, so that four sheets may meet in their crease, or where a face's material depends
+    /// on others.
+    pub(crate) fn deciding(
+        &mut self,
+        local: usize,
+        inside: Pattern,
+        outside: Pattern,
+    ) -> Option<Pattern> {
+        let everything = Pattern::MAX >> (MAX_LEAF_PRIMITIVES - self.primitives.len());
+        let bit = |at: usize| (1 as Pattern) << at;
+        let crossing = everything & !(inside | outside | bit(local));
+        let alternating = self.two_sided & bit(local) != 0 && self.two_sided & crossing != 0;
+        if alternating || self.has_mixed_materials() {
+            return Some(crossing);
+        }
+        let mut deciding = 0;
+        let mut values = [Ternary::Unknown; 2];
+        for (own, result) in [Ternary::In, Ternary::Out].into_iter().zip(&mut values) {
+            let value = |p: PrimitiveId| {
+                let at = p.0 as usize;
+                if at == local {
+                    own
+                } else if inside & bit(at) != 0 {
+                    Ternary::In
+                } else if outside & bit(at) != 0 {
+                    Ternary::Out
+                } else {
+                    Ternary::Unknown
+                }
+            };
+            self.none.clear();
+            *result = localize(&self.nodes, value, &mut self.none, &mut self.scratch);
+            for node in &self.none {
+                if let FormulaNode::Literal(literal) = node {
+                    deciding |= bit(literal.primitive.0 as usize);
+                }
+            }
+        }
+        (deciding != 0 || values[0] != values[1]).then_some(deciding)
     }
 
     /// Whether a region with this pattern lies inside the solid.

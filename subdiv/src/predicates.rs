@@ -77,12 +77,28 @@ pub(crate) fn minor_sign(minor: &Minor) -> Sign {
     }
 }
 
+/// Sign of a determinant, given in floating point with the sum of its terms' magnitudes, if that
+/// is beyond doubt.
+#[must_use]
+pub(crate) fn clear_sign(value: f64, permanent: f64) -> Option<Sign> {
+    let is_clear = value.abs() > error_bound(permanent);
+    is_clear.then_some(if value > 0.0 {
+        Sign::Positive
+    } else {
+        Sign::Negative
+    })
+}
+
+/// Cofactor expansion: at most 2n+1 roundings on any path, on terms whose magnitudes sum up to
+/// the permanent of |m|; 16 units cover n = 4 with the rounding of the bound itself. The constant
+/// keeps results that lost bits to underflow out of the filter.
+fn error_bound(permanent: f64) -> f64 {
+    16.0 * f64::EPSILON * permanent + 1e-280
+}
+
 /// Determinant in floating point and a bound on its error.
 #[must_use]
 pub(crate) fn filtered(n: usize, m: &[[f64; 4]; 4]) -> (f64, f64) {
-    // Cofactor expansion: at most 2n+1 roundings on any path, on terms whose magnitudes sum up
-    // to the permanent of |m|; 16 units cover n = 4 with the rounding of the bound itself. The
-    // constant keeps results that lost bits to underflow out of the filter.
     let (det, permanent) = match n {
         1 => (m[0][0], 0.0),
         2 => two(m[0], m[1], 0, 1),
@@ -102,7 +118,7 @@ pub(crate) fn filtered(n: usize, m: &[[f64; 4]; 4]) -> (f64, f64) {
             (det, permanent)
         }
     };
-    (det, 16.0 * f64::EPSILON * permanent + 1e-280)
+    (det, error_bound(permanent))
 }
 
 fn two(a: [f64; 4], b: [f64; 4], i: usize, j: usize) -> (f64, f64) {

@@ -67,6 +67,18 @@ impl Octants {
         Self { inside, component }
     }
 
+    /// Whether the boundary is more than a plane or a crease here, or a crease in which four
+    /// sheets meet.
+    #[must_use]
+    pub(crate) fn is_corner(&self) -> bool {
+        let at = |octant: u8| self.inside[usize::from(octant)];
+        let straight = |bit: u8| (0..8).all(|octant| at(octant) == at(octant ^ bit));
+        let alternating = |[a, b]: [u8; 2]| at(0) == at(a | b) && at(a) == at(b) && at(0) != at(a);
+        [(1, [2, 4]), (2, [4, 1]), (4, [1, 2])]
+            .into_iter()
+            .all(|(bit, others)| !straight(bit) || alternating(others))
+    }
+
     /// The sheet between two octants that share a face, one inside and one outside: the
     /// components that it separates.
     #[must_use]

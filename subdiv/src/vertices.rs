@@ -47,7 +47,7 @@ impl VertexNamer {
     }
 
     /// The mesh vertex at the beginning of a cell's side; `None` where the boundary passes
-    /// straight through a facet's arrangement vertex.
+    /// straight through an arrangement vertex in a facet, or inside a leaf of planes.
     pub(crate) fn real_vertex(
         &mut self,
         formula: &mut LeafFormula,
@@ -59,7 +59,7 @@ impl VertexNamer {
         let vertex = match name.iter().filter(|p| **p < FACET).count() {
             1 => polygon.edge_vertex(name, &mut self.snapper, mesh),
             2 => self.facet_vertex(formula, polygon, name, side.pattern, mesh)?,
-            _ => self.corner_vertex(formula, polygon, side, mesh),
+            _ => self.corner_vertex(formula, polygon, side, mesh)?,
         };
         let position = mesh.positions[vertex as usize];
         let leaf = polygon.leaf;
@@ -139,21 +139,25 @@ impl VertexNamer {
         polygon: &LeafPolygon<'_>,
         side: CellSide,
         mesh: &mut MeshBuilder,
-    ) -> u32 {
+    ) -> Option<u32> {
         let (vertex, pattern) = (side.from, side.pattern);
         let planes = polygon.arrangement.vertex(vertex).planes;
         let octants = octants(formula, planes, pattern);
+        // Creases of curved leaves keep such points, which lie on the true curves.
+        if !polygon.leaf.is_curved() && !octants.is_corner() && !formula.has_mixed_materials() {
+            return None;
+        }
         let (inside, outside) = octants.sheet(octant(planes, polygon.own, pattern));
         let key = (vertex, inside, outside);
         if let Some((_, found)) = self.corners.iter().find(|(k, _)| *k == key) {
-            return *found;
+            return Some(*found);
         }
         let position = polygon.leaf.position(planes, &mut self.snapper);
         let created = mesh.interior_vertex(position);
         mesh.split_vertices +=
             u64::from(self.corners.iter().any(|((other, ..), _)| *other == vertex));
         self.corners.push((key, created));
-        created
+        Some(created)
     }
 
     /// The vertex in the middle of a crease along which four sheets meet, when neither end is

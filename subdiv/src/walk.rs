@@ -54,6 +54,8 @@ pub(crate) struct Frame {
     pub active: Vec<Active>,
     /// The formula pruned to them.
     pub formula: Vec<FormulaNode>,
+    /// The formula pruned to what crosses the simplex itself; empty where that is `formula`.
+    within: Vec<FormulaNode>,
 }
 
 impl Frame {
@@ -61,6 +63,17 @@ impl Frame {
         self.coefficients.clear();
         self.active.clear();
         self.formula.clear();
+        self.within.clear();
+    }
+
+    /// The formula that holds in the simplex, whatever is around it.
+    #[must_use]
+    pub(crate) fn formula_within(&self) -> &[FormulaNode] {
+        if self.within.is_empty() {
+            &self.formula
+        } else {
+            &self.within
+        }
     }
 
     /// Drops primitives that do not matter; without any left the formula is decided.
@@ -85,6 +98,7 @@ impl Frame {
         pruned.clear();
         let result = localize(&self.formula, value, pruned, scratch);
         std::mem::swap(&mut self.formula, pruned);
+        self.within.clear();
         if result != Ternary::Unknown {
             self.formula.clear();
         }
@@ -164,8 +178,6 @@ pub(crate) struct Walker {
     values: [Vec<Ternary>; 2],
     /// Value of each active primitive in them.
     inner_values: [Vec<Ternary>; 2],
-    /// A formula that nobody needs.
-    discarded: Vec<FormulaNode>,
     /// Marks the primitives that a pruned formula uses.
     used: Vec<u32>,
     stamp: u32,
@@ -185,7 +197,6 @@ impl Walker {
             frames: Vec::new(),
             values: [unknown(), unknown()],
             inner_values: [unknown(), unknown()],
-            discarded: Vec::new(),
             used: vec![0; n],
             stamp: 0,
             scratch: LocalizeScratch::default(),
@@ -219,7 +230,7 @@ impl Walker {
             let nodes = solid.formula.nodes();
             if localize(nodes, value, &mut frame.formula, &mut self.scratch) == Ternary::Unknown {
                 self.drop_unused(&mut frame);
-                if self.is_undecided(&frame, 0) {
+                if self.is_undecided(&mut frame, 0) {
                     sectors.push(Sector { simplex, frame });
                 }
             }
@@ -385,15 +396,14 @@ impl Walker {
     }
 
     /// Whether the formula is undecided in a simplex, given that it is so around it.
-    fn is_undecided(&mut self, frame: &Frame, side: usize) -> bool {
+    fn is_undecided(&mut self, frame: &mut Frame, side: usize) -> bool {
         if frame.active.iter().all(|a| a.value == Ternary::Unknown) {
             return true;
         }
         let values = &self.inner_values[side];
         let value = |p: PrimitiveId| values[p.0 as usize];
-        self.discarded.clear();
-        let discarded = &mut self.discarded;
-        localize(&frame.formula, value, discarded, &mut self.scratch) == Ternary::Unknown
+        let within = &mut frame.within;
+        localize(&frame.formula, value, within, &mut self.scratch) == Ternary::Unknown
     }
 
     /// Keeps only the active primitives that the formula still mentions.
