@@ -36,7 +36,7 @@ pub(crate) fn run(
         report.input.format = Some(format.name());
         let (fragments, solid) = report.timed("reading", || loose::read(job, &bytes))?;
         progress.begin("stitching");
-        let brep = report.timed("stitching", || stitch(&fragments))?;
+        let (brep, _) = report.timed("stitching", || stitch(&fragments))?;
         let is_mesh = true;
         let boundary = Boundary {
             brep,
@@ -123,8 +123,9 @@ fn mesh(
         return Ok(brep);
     }
     progress.begin("merging");
-    let (brep, counts) = report.timed("merging", || merge(brep, solid));
+    let (brep, counts, moved) = report.timed("merging", || merge(brep, solid))?;
     report.add_merging(&counts);
+    report.add_deviation(moved);
     stop_if_interrupted()?;
     Ok(brep)
 }
@@ -140,8 +141,9 @@ fn subdivided(
     let fragments = subdivide(solid, job, rule, progress, report)?;
     stop_if_interrupted()?;
     progress.begin("stitching");
-    let brep = report.timed("stitching", || stitch(&fragments))?;
+    let (brep, moved) = report.timed("stitching", || stitch(&fragments))?;
     stop_if_interrupted()?;
+    report.add_deviation(moved);
     Ok(brep)
 }
 
@@ -173,23 +175,35 @@ fn subdivide(
 }
 
 /// A subdivision that does not close is this program's fault, never the model's.
-fn stitch(fragments: &Fragments) -> Result<Valid<Brep>, Failure> {
+///
+/// Also returns how far vertices moved.
+fn stitch(fragments: &Fragments) -> Result<(Valid<Brep>, f64), Failure> {
     let stitched = brep::stitch(fragments).map_err(|error| match error {
         brep::Error::TooManyTriangles { .. } => Failure::Limit(error.to_string()),
         _ => Failure::Bug(error.to_string()),
     })?;
-    let bug = |defects: brep::Defects| Failure::Bug(defects.to_string());
-    let valid = stitched.validate().map_err(bug)?;
-    let (clean, _) = remove_degenerate(valid).map_err(bug)?;
-    Ok(clean)
+    without_degenerate(stitched.validate().map_err(|defects| bug(&defects))?)
 }
 
-/// A plane needs no facets but those between its edges.
-fn merge(brep: Valid<Brep>, solid: &Solid) -> (Valid<Brep>, Retriangulated) {
-    brep::retriangulate(brep, |PrimitiveId(at)| {
+/// A plane needs no facets but those between its edges; then more edges without length may go.
+///
+/// Also returns how far vertices moved.
+fn merge(brep: Valid<Brep>, solid: &Solid) -> Result<(Valid<Brep>, Retriangulated, f64), Failure> {
+    let (brep, counts) = brep::retriangulate(brep, |PrimitiveId(at)| {
         let primitive = solid.primitives.get(at as usize);
         primitive.is_some_and(|primitive| primitive.polynomial.degree() == 1)
-    })
+    });
+    let (brep, moved) = without_degenerate(brep)?;
+    Ok((brep, counts, moved))
+}
+
+fn without_degenerate(brep: Valid<Brep>) -> Result<(Valid<Brep>, f64), Failure> {
+    let (clean, counts) = remove_degenerate(brep).map_err(|defects| bug(&defects))?;
+    Ok((clean, counts.longest_collapsed))
+}
+
+fn bug(defects: &brep::Defects) -> Failure {
+    Failure::Bug(defects.to_string())
 }
 
 fn stop_if_interrupted() -> Result<(), Failure> {

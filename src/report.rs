@@ -248,6 +248,11 @@ impl Report {
         Ok(serde_json::to_string_pretty(self)? + "\n")
     }
 
+    /// Counts what was done to the mesh after its deviation was proved.
+    pub(crate) fn add_deviation(&mut self, moved: f64) {
+        self.proved_distance = self.proved_distance.map(|proved| proved + moved);
+    }
+
     /// What a subdivision proved and counted.
     pub(crate) fn add_subdivision(&mut self, of: &subdiv::Report) {
         self.counts.leaves = of.leaves;

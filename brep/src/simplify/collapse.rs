@@ -2,12 +2,23 @@
 
 use crate::topology::{Brep, HalfEdgeKey, HalfEdgeView, VertexKey};
 
-/// Collapses edges whose ends have equal positions; returns how many, and how many must stay.
-pub(super) fn collapse_zero_edges(brep: &mut Brep) -> (usize, usize) {
-    let zero = |brep: &Brep, key: HalfEdgeKey| {
+/// What was collapsed.
+pub(super) struct Collapsed {
+    pub(super) count: usize,
+    /// Length of the longest one.
+    pub(super) longest: f64,
+    /// Edges that must stay.
+    pub(super) remaining: usize,
+}
+
+/// Collapses edges no longer than `reach`.
+pub(super) fn collapse_short_edges(brep: &mut Brep, reach: f64) -> Collapsed {
+    let length = |brep: &Brep, key: HalfEdgeKey| {
         let half_edge = brep.half_edge(key);
-        half_edge.origin().position() == half_edge.target().position()
+        let [from, to] = [half_edge.origin(), half_edge.target()];
+        from.position().distance(to.position())
     };
+    let zero = |brep: &Brep, key: HalfEdgeKey| length(brep, key) <= reach;
     // Both directions: of a collapsed triangle one half-edge of each remaining edge survives.
     let mut pending: Vec<HalfEdgeKey> = brep
         .half_edges
@@ -15,6 +26,7 @@ pub(super) fn collapse_zero_edges(brep: &mut Brep) -> (usize, usize) {
         .filter(|&key| zero(brep, key))
         .collect();
     let mut collapsed = 0;
+    let mut longest = 0.0_f64;
     let mut neighbours = Vec::new();
     loop {
         let before = collapsed;
@@ -25,13 +37,18 @@ pub(super) fn collapse_zero_edges(brep: &mut Brep) -> (usize, usize) {
             }
             let possible = link_condition(brep, key, &mut neighbours);
             if possible {
+                longest = longest.max(length(brep, key));
                 collapse(brep, key);
                 collapsed += 1;
             }
             !possible
         });
         if collapsed == before {
-            return (collapsed, pending.len() / 2);
+            return Collapsed {
+                count: collapsed,
+                longest,
+                remaining: pending.len() / 2,
+            };
         }
     }
 }

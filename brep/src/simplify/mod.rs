@@ -3,35 +3,56 @@
 mod collapse;
 mod flip;
 
-use crate::topology::Brep;
+use crate::topology::{Brep, VertexView};
 use crate::validate::{Defects, Valid};
+use glam::DVec3;
+
+/// Edges up to this length, in sizes of the mesh, have no length: where several planes meet in a
+/// point but for rounding, as at each vertex of an imported mesh, the arrangement is exact for the
+/// rounded planes and has corners this close.
+const NO_LENGTH: f64 = 1.0 / (1_u64 << 33) as f64;
 
 /// What [`remove_degenerate`] did.
-#[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
+#[derive(Clone, Copy, PartialEq, Debug, Default)]
 pub struct Simplified {
-    /// Edges of length zero that were collapsed.
+    /// Edges without length that were collapsed.
     pub collapsed_edges: usize,
+    /// Length of the longest of them.
+    pub longest_collapsed: f64,
     /// Facets without area that an edge flip removed.
     pub flipped_edges: usize,
-    /// Edges of length zero that had to stay, since collapsing them would change topology.
+    /// Edges without length that had to stay, since collapsing them would change topology.
     pub remaining_edges: usize,
     /// Facets without area that had to stay, those at such edges included.
     pub remaining_facets: usize,
 }
 
-/// Removes edges of length zero and facets of area zero wherever topology allows.
+/// Removes edges without length and facets of area zero wherever topology allows.
 ///
-/// Lengths and areas are zero exactly or not at all: no tolerance is involved, no vertex moves,
-/// and every crease stays the same point set. Cost: linear when there is nothing to do.
+/// An edge of up to 2⁻³³ of the mesh's size has no length; areas are zero exactly or not at all.
+/// Vertices move by the lengths of collapsed edges at most. Cost: linear when there is nothing to
+/// do.
 ///
 /// # Errors
 /// Never for meshes within the guarantees; the result is validated again all the same.
 pub fn remove_degenerate(brep: Valid<Brep>) -> Result<(Valid<Brep>, Simplified), Defects> {
     let mut brep = brep.into_inner();
-    let (collapsed_edges, remaining_edges) = collapse::collapse_zero_edges(&mut brep);
+    let [low, high] = brep
+        .vertices()
+        .map(VertexView::position)
+        .fold([DVec3::INFINITY, DVec3::NEG_INFINITY], |[low, high], p| {
+            [low.min(p), high.max(p)]
+        });
+    let reach = NO_LENGTH * (high - low).max_element().max(0.0);
+    let collapse::Collapsed {
+        count: collapsed_edges,
+        longest: longest_collapsed,
+        remaining: remaining_edges,
+    } = collapse::collapse_short_edges(&mut brep, reach);
     let (flipped_edges, remaining_facets) = flip::flip_flat_facets(&mut brep);
     let counts = Simplified {
         collapsed_edges,
+        longest_collapsed,
         flipped_edges,
         remaining_edges,
         remaining_facets,
@@ -47,7 +68,6 @@ mod tests {
     use super::*;
     use crate::samples::{cube, mesh, tetrahedron, torus};
     use crate::{Properties, Shells, stitch};
-    use glam::DVec3;
     use proptest::prelude::*;
     use subdiv::Fragments;
 
