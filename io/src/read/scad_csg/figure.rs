@@ -8,6 +8,7 @@ mod chain;
 mod disc_hull;
 mod loops;
 mod offset;
+mod partition;
 mod polygon;
 mod read;
 mod revolve;
@@ -18,6 +19,7 @@ mod twist;
 pub(super) use chain::{doubled_area, hull as convex_ring, turn};
 pub(super) use loops::Loops;
 pub(super) use offset::Offset;
+pub(super) use partition::widest_gap;
 pub(super) use read::{Extrusion, FigureLeaf, extrusion, leaf, offset};
 pub(super) use solid::{Refusal, extrude};
 

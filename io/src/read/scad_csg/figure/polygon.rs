@@ -1,11 +1,14 @@
 //! Polygons with holes, given as paths that are filled by the even-odd rule.
 
 use super::chain::{complement, doubled_area, formula, turn};
-use super::{Outline, Part, Region};
+use super::{Outline, Part, Region, partition};
 use glam::DVec2;
 use i_overlay::core::fill_rule::FillRule;
 use i_overlay::float::simplify::SimplifyShape;
 use std::collections::BTreeMap;
+
+/// Outlines with more edges get a formula that is local.
+const MOST_EDGES: usize = 60;
 
 /// A vertex of the resolved outline this close to a given one, in sizes of the polygon, is it.
 const SAME: f64 = 1e-12;
@@ -81,6 +84,11 @@ impl Region {
             loops.extend(filled.into_iter().chain(islands).chain(holes));
         }
         parts.push(Part::Close);
+        if loops.iter().map(Vec::len).sum::<usize>() > MOST_EDGES {
+            parts = vec![Part::Open { union: true }];
+            partition::formula(&loops, &mut parts);
+            parts.push(Part::Close);
+        }
         (!corners.is_empty()).then_some(Self {
             parts,
             outline: Outline::Corners {

@@ -10,6 +10,7 @@
 //! space that they have nothing to do with: a mesh of n faces has a formula of O(n) literals in
 //! which few matter in each place.
 
+use super::super::figure::widest_gap;
 use super::faces::{Faces, Plane, Triangle, Unsound};
 use glam::DVec3;
 
@@ -34,7 +35,7 @@ const MOST_PIECES: usize = 200;
 const CANDIDATES: usize = 12;
 
 /// Cells with more faces are split by axis-parallel planes.
-const CROWD: usize = 40;
+const CROWD: usize = 16;
 
 /// Distance from a plane within which points count as lying in it, in sizes of the polyhedron.
 const NEAR: f64 = 4e-6;
@@ -63,33 +64,25 @@ pub(super) fn formula(faces: &mut Faces) -> Result<Vec<Piece>, Unsound> {
         let across = (triangles.len() > CROWD)
             .then(|| across_the_middle(&triangles, near))
             .flatten();
-        let best = match across {
-            Some(plane) => {
-                faces.planes.push(plane);
-                Some(faces.planes.len() - 1)
+        let (best, [front, back], along) = if let Some((plane, sides)) = across {
+            faces.planes.push(plane);
+            (faces.planes.len() - 1, sides, false)
+        } else {
+            let Some(best) = choose(&triangles, &faces.planes, near) else {
+                continue;
+            };
+            let Some(plane) = faces.planes.get(best) else {
+                continue;
+            };
+            let sides = sides(triangles.iter().filter(|t| t.plane != best), plane, near);
+            let own = || triangles.iter().filter(|t| t.plane == best);
+            let (along, against) = (own().any(|t| t.along), own().any(|t| !t.along));
+            // With faces both ways in one plane and none on a side, the side is neither.
+            if along && against && sides.iter().any(Vec::is_empty) {
+                return Err(Unsound::Crossing);
             }
-            None => choose(&triangles, &faces.planes, near),
+            (best, sides, along)
         };
-        let Some(best) = best else {
-            continue;
-        };
-        let Some(plane) = faces.planes.get(best) else {
-            continue;
-        };
-        let (mut front, mut back) = (Vec::new(), Vec::new());
-        let (mut along, mut against) = (false, false);
-        for triangle in triangles {
-            if triangle.plane == best {
-                along |= triangle.along;
-                against |= !triangle.along;
-            } else {
-                split(&triangle, plane, near, &mut front, &mut back);
-            }
-        }
-        // With faces both ways in one plane and none on a side, the side is neither.
-        if along && against && (front.is_empty() || back.is_empty()) {
-            return Err(Unsound::Crossing);
-        }
         let side = |inside: bool| {
             Task::Part(Piece::Side {
                 plane: best,
@@ -126,37 +119,46 @@ pub(super) fn formula(faces: &mut Faces) -> Result<Vec<Piece>, Unsound> {
     Ok(pieces)
 }
 
-/// An axis-parallel plane with about half of the faces on each side; `None` if none has fewer
-/// than most of them on both.
-fn across_the_middle(triangles: &[Triangle], near: f64) -> Option<Plane> {
-    let low = |t: &Triangle| t.corners.iter().copied().fold(DVec3::INFINITY, DVec3::min);
-    let high = |t: &Triangle| {
-        t.corners
-            .iter()
-            .copied()
-            .fold(DVec3::NEG_INFINITY, DVec3::max)
-    };
+/// An axis-parallel plane with about half of the faces on each side, as far as possible from all
+/// vertices, and the faces before and behind it; `None` if none has far fewer than all of them
+/// on both.
+fn across_the_middle(triangles: &[Triangle], near: f64) -> Option<(Plane, [Vec<Triangle>; 2])> {
     let mut best: Option<(usize, Plane)> = None;
     for (axis, normal) in [DVec3::X, DVec3::Y, DVec3::Z].into_iter().enumerate() {
-        let mut middles: Vec<f64> = triangles
-            .iter()
-            .map(|t| 0.5 * (low(t)[axis] + high(t)[axis]))
-            .collect();
-        let half = middles.len() / 2;
-        let (_, middle, _) = middles.select_nth_unstable_by(half, f64::total_cmp);
-        // Beside the vertices, of which many may lie in a plane.
-        let offset = *middle + 7.3 * near;
-        let reaches = |t: &&Triangle| high(t)[axis] > offset + near;
-        let starts = |t: &&Triangle| low(t)[axis] < offset - near;
+        let corners = triangles.iter().flat_map(|t| t.corners.map(|p| p[axis]));
+        let mut corners: Vec<f64> = corners.collect();
+        corners.sort_unstable_by(f64::total_cmp);
+        let Some(offset) = widest_gap(&corners, near) else {
+            continue;
+        };
+        let reaches = |t: &&Triangle| t.corners.iter().any(|p| p[axis] > offset);
+        let starts = |t: &&Triangle| t.corners.iter().any(|p| p[axis] < offset);
         let above = triangles.iter().filter(reaches).count();
         let below = triangles.iter().filter(starts).count();
         let larger = above.max(below);
-        if above.min(below) > 0 && best.is_none_or(|(least, _)| larger < least) {
+        if best.is_none_or(|(least, _)| larger < least) {
             best = Some((larger, Plane { normal, offset }));
         }
     }
     let (larger, plane) = best?;
-    (larger * 5 < triangles.len() * 4).then_some(plane)
+    if larger * 10 > triangles.len() * 9 {
+        return None;
+    }
+    let sides = sides(triangles.iter(), &plane, near);
+    (!sides.iter().any(Vec::is_empty)).then_some((plane, sides))
+}
+
+/// The parts of triangles before and behind a plane.
+fn sides<'a>(
+    triangles: impl Iterator<Item = &'a Triangle>,
+    plane: &Plane,
+    near: f64,
+) -> [Vec<Triangle>; 2] {
+    let [mut front, mut back] = [Vec::new(), Vec::new()];
+    for triangle in triangles {
+        split(triangle, plane, near, &mut front, &mut back);
+    }
+    [front, back]
 }
 
 /// The plane that splits few faces, and best one with all faces on one side.
@@ -238,34 +240,60 @@ fn clip(corners: [DVec3; 3], away: [f64; 3], near: f64) -> Vec<DVec3> {
     part
 }
 
-/// Whether the formula holds a point.
-fn contains(pieces: &[Piece], planes: &[Plane], point: DVec3) -> bool {
-    let mut open = vec![(true, false)];
-    for piece in pieces {
-        let value = match *piece {
+/// For each operator, where what follows it begins.
+fn ends(pieces: &[Piece]) -> Vec<usize> {
+    let mut ends = vec![0; pieces.len()];
+    let mut open = Vec::new();
+    for (at, piece) in pieces.iter().enumerate() {
+        match piece {
+            Piece::Open { .. } => open.push(at),
+            Piece::Close => {
+                if let Some(end) = open.pop().and_then(|start: usize| ends.get_mut(start)) {
+                    *end = at + 1;
+                }
+            }
+            Piece::Side { .. } => {}
+        }
+    }
+    ends
+}
+
+/// Whether the formula holds a point. What a side decides is skipped: the time is that of
+/// finding the point's part of space.
+fn contains(pieces: &[Piece], ends: &[usize], planes: &[Plane], point: DVec3) -> bool {
+    let mut open: Vec<(bool, bool, usize)> = Vec::new();
+    let mut at = 0;
+    let mut value = false;
+    while let Some(piece) = pieces.get(at) {
+        value = match *piece {
             Piece::Open { union } => {
-                open.push((union, !union));
+                open.push((union, !union, ends.get(at).copied().unwrap_or(usize::MAX)));
+                at += 1;
                 continue;
             }
-            Piece::Close => open.pop().is_some_and(|(_, value)| value),
+            Piece::Close => open.pop().is_some_and(|(_, value, _)| value),
             Piece::Side { plane, inside } => planes
                 .get(plane)
                 .is_some_and(|p| (p.normal.dot(point) <= p.offset) == inside),
         };
-        if let Some((union, all)) = open.last_mut() {
-            *all = if *union { *all || value } else { *all && value };
+        at += 1;
+        // A union is decided by what holds the point, an intersection by what does not.
+        while let Some(&(union, _, end)) = open.last()
+            && value == union
+        {
+            open.pop();
+            at = end;
         }
     }
-    open.pop().is_some_and(|(_, value)| value)
+    value
 }
 
 /// Whether the formula is false just before each face and true just behind, which it is not
 /// when faces cross.
 pub(super) fn is_bounded_by(pieces: &[Piece], faces: &Faces) -> bool {
     let height = 20.0 * NEAR * faces.size;
-    // Checking all of many faces would take quadratic time.
-    let step = (faces.triangles.len() * pieces.len() / 50_000_000).max(1);
-    let mut seen = faces.triangles.iter().step_by(step).filter(|t| {
+    let ends = ends(pieces);
+    let mut seen = faces.triangles.iter().filter(|t| {
         let [a, b, c] = t.corners;
         let longest = a.distance(b).max(b.distance(c)).max(c.distance(a));
         // Slivers have no room for the two points.
@@ -275,7 +303,7 @@ pub(super) fn is_bounded_by(pieces: &[Piece], faces: &Faces) -> bool {
         let [a, b, c] = triangle.corners;
         let center = (a + b + c) / 3.0;
         let up = (b - a).cross(c - a).normalize_or_zero() * height;
-        contains(pieces, &faces.planes, center - up)
-            && !contains(pieces, &faces.planes, center + up)
+        contains(pieces, &ends, &faces.planes, center - up)
+            && !contains(pieces, &ends, &faces.planes, center + up)
     })
 }
