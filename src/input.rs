@@ -2,6 +2,7 @@
 
 use crate::args::{ClipArgs, InputFormat};
 use crate::failure::Failure;
+use crate::folder::Folder;
 use crate::run::clip_box;
 use crate::talk::Talk;
 use csg::Solid;
@@ -123,7 +124,7 @@ impl Input {
             _ => return Err(Failure::Bug(format!("no reader for {}", format.name()))),
         }
         let source = decode::decode(bytes, &name).map_err(from_decoding)?;
-        match scad_csg::read(&source, &name, &options) {
+        match scad_csg::read_with(&source, &name, &options, &self.folder()) {
             Ok(Reading { model, warnings }) => Ok(Loaded {
                 model,
                 format,
@@ -134,6 +135,14 @@ impl Input {
                 diagnostics,
                 source,
             }),
+        }
+    }
+
+    /// Where files are that the model names.
+    fn folder(&self) -> Folder {
+        match self {
+            Self::Stdin => Folder::none(),
+            Self::File(path) => Folder::of(path),
         }
     }
 

@@ -8,6 +8,7 @@ mod check;
 mod convert;
 mod excerpt;
 mod failure;
+mod folder;
 mod info;
 mod input;
 mod loose;

@@ -11,11 +11,13 @@ mod decimal;
 pub mod decode;
 mod diagnostic;
 mod expression;
+mod files;
 pub mod format;
 pub mod mesh;
 pub mod scad_csg;
 
 pub use diagnostic::{Diagnostic, Diagnostics};
+pub use files::{FileRefusal, Files, NoFiles};
 
 /// What a reader may decide.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]

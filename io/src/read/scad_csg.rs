@@ -34,6 +34,7 @@ mod complaints;
 mod evaluate;
 mod facets;
 mod figure;
+mod import;
 mod motion;
 mod nodes;
 mod parse;
@@ -45,12 +46,13 @@ mod rounded;
 mod shapes;
 mod solid_hull;
 mod solid_sum;
+mod surface;
 mod token;
 
 use super::diagnostic::{Diagnostics, Source};
-use super::{ReadOptions, Reading};
+use super::{Files, NoFiles, ReadOptions, Reading};
 
-/// Reads a model from the text of a `.csg` file.
+/// Reads a model from the text of a `.csg` file that names no other files.
 ///
 /// `name` stands for the file in complaints. A byte order mark is skipped.
 ///
@@ -67,13 +69,26 @@ use super::{ReadOptions, Reading};
 /// What keeps the file from being read, each with its place and a remedy: syntax errors, nodes
 /// that are unknown or not supported, wrong arguments, or a program instead of a dump.
 pub fn read(source: &str, name: &str, options: &ReadOptions) -> Result<Reading, Diagnostics> {
+    read_with(source, name, options, &NoFiles)
+}
+
+/// Reads a model whose `import` and `surface` nodes get their files from `files`.
+///
+/// # Errors
+/// Those of [`read`]; files that are refused or cannot be read.
+pub fn read_with(
+    source: &str,
+    name: &str,
+    options: &ReadOptions,
+    files: &dyn Files,
+) -> Result<Reading, Diagnostics> {
     let places = Source::new(source, name);
     if source.len() > token::MAX_BYTES {
         let message = "the file is longer than 4 GiB";
         return Err(places.diagnostic(0..0, message, None).into());
     }
     let ast = parse::parse(source, name, &places)?;
-    let (model, warnings) = evaluate::evaluate(source, &ast, &places, *options)?;
+    let (model, warnings) = evaluate::evaluate(source, &ast, &places, *options, files)?;
     Ok(Reading { model, warnings })
 }
 

@@ -11,8 +11,8 @@ use super::nodes::{self, Entry, Kind};
 use super::reshape::Resize;
 use super::shapes::{ShapeReader, Volume};
 use super::token::Span;
-use crate::read::ReadOptions;
 use crate::read::diagnostic::{Diagnostic, Diagnostics, Source};
+use crate::read::{Files, ReadOptions};
 use csg::{Model, ModelBuilder, Node, NodeId};
 
 /// Builds the model; the second part are warnings.
@@ -24,11 +24,12 @@ pub(super) fn evaluate(
     ast: &Ast,
     source: &Source<'_>,
     options: ReadOptions,
+    files: &dyn Files,
 ) -> Result<(Model, Vec<Diagnostic>), Diagnostics> {
     let mut evaluator = Evaluator {
         text,
         ast,
-        shapes: ShapeReader::new(options.facet_limit, options.max_degree),
+        shapes: ShapeReader::new(options.facet_limit, options.max_degree, files),
         complaints: Complaints::new(source),
         builder: ModelBuilder::new(),
         figures: Figures::default(),
@@ -85,7 +86,7 @@ pub(super) struct Frame {
 pub(super) struct Evaluator<'a, 's> {
     pub(super) text: &'a str,
     ast: &'a Ast,
-    shapes: ShapeReader,
+    shapes: ShapeReader<'s>,
     pub(super) complaints: Complaints<'s>,
     pub(super) builder: ModelBuilder,
     pub(super) figures: Figures,

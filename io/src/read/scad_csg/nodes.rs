@@ -65,6 +65,10 @@ pub(super) enum Leaf {
     Cylinder,
     /// `polyhedron(points, faces)`.
     Polyhedron,
+    /// `import(file)`: a mesh beside the model.
+    Import,
+    /// `surface(file, center, invert)`: heights beside the model.
+    Surface,
     /// `torus(r1, r2)`: ring radius, tube radius; about the z axis.
     Torus,
     /// `halfspace(n, d)`: n · (x, y, z) ≤ d.
@@ -115,7 +119,12 @@ const fn refused(name: &'static str, remedy: &'static str) -> Entry {
 
 const FONT: &str = "convert the text to polygons first, for instance by exporting it as SVG";
 const MESH: &str = "write the part as unions, intersections and differences of shapes";
-const FILE: &str = "only what is written in the dump itself is read: write the shape in place";
+const DRAWING: &str = "drawings are not read: let OpenSCAD turn it into a polygon";
+
+/// What OpenSCAD writes for imported files; only the name of the file matters for meshes.
+const IMPORT: [&str; 10] = [
+    "file", "filename", "layer", "scale", "center", "dpi", "id", "width", "height", "parts",
+];
 
 /// All nodes: OpenSCAD's, then this project's additions.
 const ENTRIES: [Entry; 42] = [
@@ -164,16 +173,16 @@ const ENTRIES: [Entry; 42] = [
     entry("fill", Kind::Fill, &[]),
     entry("minkowski", Kind::Minkowski, &[]),
     entry("resize", Kind::Resize, &["newsize", "auto"]),
-    refused("import", FILE),
-    refused("import_stl", FILE),
-    refused("import_off", FILE),
-    refused("import_dxf", FILE),
-    refused("surface", FILE),
+    leaf("import", Leaf::Import, &IMPORT),
+    leaf("import_stl", Leaf::Import, &IMPORT),
+    leaf("import_off", Leaf::Import, &IMPORT),
+    refused("import_dxf", DRAWING),
+    leaf("surface", Leaf::Surface, &["file", "center", "invert"]),
     refused("roof", MESH),
     refused("glide", MESH),
     refused("subdiv", MESH),
-    refused("dxf_linear_extrude", FILE),
-    refused("dxf_rotate_extrude", FILE),
+    refused("dxf_linear_extrude", DRAWING),
+    refused("dxf_rotate_extrude", DRAWING),
     leaf("torus", Leaf::Torus, &["r1", "r2"]),
     leaf("halfspace", Leaf::HalfSpace, &["n", "d"]),
     leaf("quadric", Leaf::Quadric, &["m"]),

@@ -16,10 +16,10 @@ use partition::Piece;
 
 /// More faces are not tried as a convex body: all their planes would stand in one intersection,
 /// of which many matter in each place.
-const MAX_CONVEX: usize = 200;
+const MAX_CONVEX: usize = 100;
 
 /// Polyhedra with more faces are meshes of curved bodies.
-const MAX_FACES: usize = 20_000;
+pub(super) const MAX_FACES: usize = 100_000;
 
 /// Distance of the box around a formula from the polyhedron, in sizes of it.
 const MARGIN: f64 = 0.05;
@@ -59,12 +59,7 @@ pub(super) fn read(
     }
     let at = arguments.name;
     if faces.value.len() > MAX_FACES {
-        let found = faces.value.len();
-        let message = format!("a polyhedron of {found} faces is too large");
-        let remedy = format!(
-            "polyhedra of up to {MAX_FACES} faces are read; start from the model that this mesh was made of"
-        );
-        return Err(complaints.error(at, message, remedy));
+        return Err(too_large(faces.value.len(), at, complaints));
     }
     let vertices: Vec<DVec3> = points.value.iter().map(|p| DVec3::from_slice(p)).collect();
     let mut corners = Vec::with_capacity(faces.value.len());
@@ -90,9 +85,6 @@ pub(super) fn read(
             shape => return finish(shape, size, at, complaints),
         }
     }
-    if size > super::shapes::MAX_SIZE {
-        return finish(Shape::sphere(1.0), size, at, complaints);
-    }
     let mut polygons = Vec::with_capacity(corners.len());
     for face in &corners {
         let positions: Option<Vec<DVec3>> =
@@ -106,11 +98,36 @@ pub(super) fn read(
         };
         polygons.push(polygon);
     }
+    of_polygons(polygons, at, complaints)
+}
+
+/// The polyhedron with these faces, given as lists of positions in one sense of rotation.
+pub(super) fn of_polygons(
+    polygons: Vec<Vec<DVec3>>,
+    at: Span,
+    complaints: &mut Complaints<'_>,
+) -> Result<Volume, Reported> {
+    let numbers = polygons.iter().flatten().flat_map(DVec3::to_array);
+    let size = numbers.fold(0.0_f64, |size, c| size.max(c.abs()));
+    if size > super::shapes::MAX_SIZE {
+        return finish(Shape::sphere(1.0), size, at, complaints);
+    }
+    if polygons.len() > MAX_FACES {
+        return Err(too_large(polygons.len(), at, complaints));
+    }
     match dented(polygons) {
         Ok(parts) => Ok(Volume::Formula(parts)),
         Err(Fault::Numbers(error)) => Err(complaints.error(at, error.to_string(), None)),
         Err(Fault::Unsound(why)) => Err(refuse(&why, at, complaints)),
     }
+}
+
+fn too_large(faces: usize, at: Span, complaints: &mut Complaints<'_>) -> Reported {
+    let message = format!("a polyhedron of {faces} faces is too large");
+    let remedy = format!(
+        "polyhedra of up to {MAX_FACES} faces are read; start from the model that this mesh was made of"
+    );
+    complaints.error(at, message, remedy)
 }
 
 /// Why a polyhedron has no formula.

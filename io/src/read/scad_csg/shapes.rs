@@ -3,9 +3,9 @@
 use super::arguments::Arguments;
 use super::complaints::{Complaints, Reported};
 use super::nodes::Leaf;
-use super::polyhedron;
 use super::token::Span;
-use crate::read::expression;
+use super::{import, polyhedron, surface};
+use crate::read::{Files, expression};
 use csg::{Polynomial, Shape};
 use glam::DVec3;
 use std::f64::consts::PI;
@@ -29,7 +29,8 @@ const MAX_COEFFICIENTS: usize = 50_000_000;
 pub(super) const MAX_SIZE: f64 = 1e50;
 
 /// Reads shapes within the limits that hold for a whole file.
-pub(super) struct ShapeReader {
+pub(super) struct ShapeReader<'f> {
+    files: &'f dyn Files,
     facet_limit: u32,
     max_degree: u8,
     work_left: u64,
@@ -38,9 +39,10 @@ pub(super) struct ShapeReader {
 
 type Outcome = Result<Volume, Reported>;
 
-impl ShapeReader {
-    pub(super) fn new(facet_limit: u32, max_degree: u8) -> Self {
+impl<'f> ShapeReader<'f> {
+    pub(super) fn new(facet_limit: u32, max_degree: u8, files: &'f dyn Files) -> Self {
         Self {
+            files,
             facet_limit,
             max_degree,
             work_left: expression::WORK,
@@ -59,6 +61,8 @@ impl ShapeReader {
             Leaf::Sphere => self.sphere(arguments, complaints),
             Leaf::Cylinder => self.cylinder(arguments, complaints),
             Leaf::Polyhedron => polyhedron::read(arguments, complaints),
+            Leaf::Import => import::read(arguments, self.files, complaints),
+            Leaf::Surface => surface::read(arguments, self.files, complaints),
             Leaf::Torus => torus(arguments, complaints),
             Leaf::HalfSpace => half_space(arguments, complaints),
             Leaf::Quadric => quadric(arguments, complaints),

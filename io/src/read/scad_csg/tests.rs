@@ -5,6 +5,7 @@ use glam::DVec3;
 use proptest::prelude::*;
 
 mod figures;
+mod files;
 mod messages;
 mod random;
 mod semantics;

@@ -22,7 +22,7 @@ fn unknown_and_unsupported_nodes_are_named() {
         ),
         (
             "surface(file = \"a.dat\"); surface(file = \"b.dat\");",
-            "t.csg:1:1: `surface` is not supported, here and once more (only what is written in the dump itself is read: write the shape in place)",
+            "t.csg:1:1: cannot read \"a.dat\": no other files are read here, here and once more (give the model as a file, beside the files that it names)",
         ),
         (
             "text(\"a\");",
