@@ -143,6 +143,8 @@ impl Input {
         match self {
             Self::Stdin => Folder::none(),
             Self::File(path) => Folder::of(path),
+            Self::Read { name, .. } if name.starts_with('<') => Folder::none(),
+            Self::Read { name, .. } => Folder::of(Path::new(name)),
         }
     }
 

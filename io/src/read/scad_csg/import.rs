@@ -8,6 +8,7 @@ use super::complaints::{Complaints, Reported};
 use super::polyhedron;
 use super::shapes::Volume;
 use crate::read::Files;
+use crate::read::mesh::{self, MeshFormat};
 use glam::DVec3;
 use std::path::Path;
 
@@ -68,6 +69,9 @@ pub(super) fn read(
     let extension = extension.map(|e| e.to_string_lossy().to_ascii_lowercase());
     let at = arguments.name;
     let parse: &dyn Fn(&[u8]) -> Result<Polygons, String> = match extension.as_deref() {
+        Some("stl") => &|bytes| triangles(bytes, MeshFormat::Stl),
+        Some("obj") => &|bytes| triangles(bytes, MeshFormat::Obj),
+        Some("3mf") => &|bytes| triangles(bytes, MeshFormat::Threemf),
         Some("off") => &off::read,
         Some("amf") => &amf::read,
         Some("dxf" | "svg") => {
@@ -78,7 +82,7 @@ pub(super) fn read(
         }
         _ => {
             let message = format!("\"{path}\" is no mesh that can be imported");
-            let remedy = "OFF and AMF are read";
+            let remedy = "STL, OFF, AMF, OBJ and 3MF are read";
             return Err(complaints.error(at, message, remedy.to_owned()));
         }
     };
@@ -88,4 +92,16 @@ pub(super) fn read(
         complaints.error(at, format!("cannot read \"{path}\": {wrong}"), remedy)
     })?;
     polyhedron::of_polygons(polygons, at, complaints)
+}
+
+/// The triangles of a mesh in one of the formats that are also read by themselves.
+fn triangles(bytes: &[u8], format: MeshFormat) -> Result<Polygons, String> {
+    let mesh = mesh::read(bytes, format, mesh::Limits::default()).map_err(|e| e.to_string())?;
+    let polygons = mesh.triangles.iter().enumerate().map(|(at, corners)| {
+        let position = |v: &u32| mesh.positions.get(*v as usize).copied();
+        let positions: Option<Vec<DVec3>> = corners.iter().map(position).collect();
+        let finite = positions.filter(|all| all.iter().all(|p| p.is_finite()));
+        finite.ok_or_else(|| format!("{} has no corner", mesh.place(at)))
+    });
+    polygons.collect()
 }

@@ -37,6 +37,30 @@ fn told(result: Result<Reading, Diagnostics>) -> String {
 const TETRAHEDRON: &str = "OFF # a corner of the unit cube\n4 4 6\n0 0 0\n1 0 0\n\n0 1 0\n0 0 1\n\
                            3 0 2 1 255 0 0\n3 0 1 3\n3 0 3 2\n3 1 2 3\n";
 
+const OBJ: &str = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n";
+
+/// Binary STL of the same, its 32-bit corners equal where they meet.
+fn stl() -> Vec<u8> {
+    let corners = [
+        [0.0_f32, 0.0, 0.0],
+        [1.0, 0.0, 0.0],
+        [0.0, 1.0, 0.0],
+        [0.0, 0.0, 1.0],
+    ];
+    let mut bytes = vec![b' '; 80];
+    bytes.extend(4_u32.to_le_bytes());
+    for face in [[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]] {
+        bytes.extend([0; 12]);
+        bytes.extend(
+            face.into_iter()
+                .flat_map(|v: usize| corners[v])
+                .flat_map(f32::to_le_bytes),
+        );
+        bytes.extend([0; 2]);
+    }
+    bytes
+}
+
 const AMF: &str = r#"<?xml version="1.0"?><amf unit="millimeter"><object id="0"><mesh><vertices>
 <vertex><coordinates><x>0</x><y>0</y><z>0</z></coordinates></vertex>
 <vertex><coordinates><x>1</x><y>0</y><z>0</z></coordinates></vertex>
@@ -48,11 +72,16 @@ const AMF: &str = r#"<?xml version="1.0"?><amf unit="millimeter"><object id="0">
 
 #[test]
 fn meshes_are_imported_as_polyhedra() {
-    for (name, text) in [("t.off", TETRAHEDRON), ("sub/t.AMF", AMF)] {
+    for (name, bytes) in [
+        ("t.off", TETRAHEDRON.into()),
+        ("sub/t.AMF", AMF.into()),
+        ("t.obj", OBJ.into()),
+        ("t.stl", stl()),
+    ] {
         let node = format!(
             "import(file = \"{name}\", layer = \"\", origin = [0, 0], scale = 1, timestamp = 1);"
         );
-        let reading = read(&node, vec![(name, text.into())]).expect("sound");
+        let reading = read(&node, vec![(name, bytes)]).expect("sound");
         assert!(reading.warnings.is_empty(), "{:?}", reading.warnings);
         let found = holds(
             &reading,
