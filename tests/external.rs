@@ -119,6 +119,7 @@ fn lib3mf_and_plyfile_find_what_we_wrote() {
             brep,
             solid,
             properties,
+            shells,
             ..
         } = &convert(source, 0.02);
         let [path_3mf, path_ply] =
@@ -147,6 +148,10 @@ fn lib3mf_and_plyfile_find_what_we_wrote() {
         }
         assert_eq!(reports[0].warnings, Some(0), "{name}");
         assert_eq!(reports[0].manifold, Some(true), "{name}");
+        let solids = shells.solids.len();
+        let names = (1..=solids).map(|number| format!("solid_{number}"));
+        assert_eq!(reports[0].objects, names.collect::<Vec<_>>(), "{name}");
+        assert_eq!(reports[0].built, Some(solids.min(1)), "{name}");
         // eModelUnit::Inch of lib3mf.
         assert_eq!(reports[0].unit, Some(3), "{name}");
     }

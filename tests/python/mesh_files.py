@@ -7,6 +7,8 @@ Usage: mesh_files.py FILE...    prints a JSON list, one object a file, in the or
     manifold               lib3mf: the mesh is a closed, oriented manifold
     unit                   lib3mf's number of the model's unit (1 mm, 3 inch)
     materials              number of base materials; in PLY of colours
+    objects                names of lib3mf's mesh objects, each a solid
+    built                  number of its build items
     volume                 of the triangles as read, in file units
 """
 
@@ -29,11 +31,12 @@ def threemf(path):
     reader = model.QueryReader("3mf")
     reader.SetStrictModeActive(True)
     reader.ReadFromFile(path)
-    positions, triangles, manifold, materials = [], [], True, 0
+    positions, triangles, manifold, materials, objects = [], [], True, 0, []
     meshes = model.GetMeshObjects()
     while meshes.MoveNext():
         mesh = meshes.GetCurrentMeshObject()
         manifold = manifold and mesh.IsManifoldAndOriented()
+        objects.append(mesh.GetName())
         first = len(positions)
         positions += [list(vertex.Coordinates) for vertex in mesh.GetVertices()]
         triangles += [[first + at for at in t.Indices] for t in mesh.GetTriangleIndices()]
@@ -47,6 +50,8 @@ def threemf(path):
         "manifold": bool(manifold),
         "unit": int(model.GetUnit()),
         "materials": materials,
+        "objects": objects,
+        "built": model.GetBuildItems().Count(),
         "volume": volume(
             np.array(positions, dtype=float).reshape(-1, 3),
             np.array(triangles, dtype=int).reshape(-1, 3),

@@ -71,6 +71,10 @@ pub(crate) struct FileReport {
     pub(crate) manifold: Option<bool>,
     pub(crate) unit: Option<u32>,
     pub(crate) materials: usize,
+    /// Names of the solids' objects, and the number of things built; only of 3MF files.
+    #[serde(default)]
+    pub(crate) objects: Vec<String>,
+    pub(crate) built: Option<usize>,
     pub(crate) volume: f64,
 }
 

@@ -1,11 +1,12 @@
-//! 3MF, core specification 1.3: one mesh object, shared vertices, a base material for each colour.
+//! 3MF, core specification 1.3: one mesh object a solid, shared vertices, a base material for each
+//! colour. Several solids are components of one object, so that their places stay fixed.
 //!
 //! The archive's time stamps are fixed, so that the same model gives the same bytes.
 //! Source: 3D Manufacturing Format core specification, 3MF Consortium.
 
 use super::decimal::Decimal;
 use super::{Error, GENERATOR, Unit, appearance};
-use brep::{Brep, FacetView, Valid};
+use brep::{Brep, FacetView, Shells, Valid, VertexView};
 use csg::{Material, MaterialId};
 use quick_xml::Writer;
 use quick_xml::events::{BytesDecl, BytesStart, Event};
@@ -29,6 +30,9 @@ const RELATIONSHIPS: &str = concat!(
     r#"<Relationship Id="rel0" Target="/3D/3dmodel.model" "#,
     r#"Type="http://schemas.microsoft.com/3dmanufacturing/2013/01/3dmodel"/></Relationships>"#,
 );
+
+/// Id of the first solid's object; 1 is the list of materials.
+const FIRST_OBJECT: usize = 2;
 
 /// What to write.
 #[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
@@ -84,6 +88,7 @@ fn model(
         ("xmlns", CORE),
     ];
     let element = xml.create_element("model").with_attributes(attributes);
+    let mut built = FIRST_OBJECT;
     element.write_inner_content(|xml| {
         let application = xml.create_element("metadata");
         application
@@ -100,10 +105,27 @@ fn model(
             used.sort_unstable();
             used.dedup();
             base_materials(materials, &used, xml)?;
-            object(brep, &used, xml)
+            let parts = Part::of_solids(brep);
+            // Each object counts its own vertices.
+            let mut numbers = brep.number_vertices();
+            for part in &parts {
+                for (number, vertex) in (0..).zip(&part.vertices) {
+                    numbers[vertex.key()] = number;
+                }
+            }
+            for (number, part) in parts.iter().enumerate() {
+                part.write(number, &|vertex| numbers[vertex.key()], &used, xml)?;
+            }
+            if parts.len() > 1 {
+                assembly(parts.len(), xml)?;
+            }
+            built = FIRST_OBJECT + if parts.len() > 1 { parts.len() } else { 0 };
+            Ok(())
         })?;
         xml.create_element("build").write_inner_content(|xml| {
-            let item = xml.create_element("item").with_attribute(("objectid", "2"));
+            let built = built.to_string();
+            let item = xml.create_element("item");
+            let item = item.with_attribute(("objectid", built.as_str()));
             item.write_empty().map(drop)
         })?;
         Ok(())
@@ -133,61 +155,139 @@ fn base_materials(
     Ok(())
 }
 
-fn object(brep: &Valid<Brep>, used: &[MaterialId], xml: &mut Writer<impl Write>) -> io::Result<()> {
-    let attributes = [
-        ("id", "2"),
-        ("type", "model"),
-        ("pid", "1"),
-        ("pindex", "0"),
-    ];
-    let object = xml.create_element("object").with_attributes(attributes);
-    object.write_inner_content(|xml| {
-        xml.create_element("mesh").write_inner_content(|xml| {
-            xml.create_element("vertices")
-                .write_inner_content(|xml| vertices(brep, xml))?;
-            xml.create_element("triangles")
-                .write_inner_content(|xml| triangles(brep, used, xml))?;
+/// The facets of one solid, and its vertices in the mesh's order.
+struct Part<'a> {
+    facets: Vec<FacetView<'a>>,
+    vertices: Vec<VertexView<'a>>,
+}
+
+impl<'a> Part<'a> {
+    /// One for each solid, its cavities included.
+    ///
+    /// Cavities that lie in no solid (by rounding, almost empty) go with the first one, so that
+    /// no facet is lost.
+    fn of_solids(brep: &'a Valid<Brep>) -> Vec<Self> {
+        let shells = Shells::of(brep);
+        let mut part_of = vec![0; shells.shells.len()];
+        for (at, solid) in shells.solids.iter().enumerate() {
+            for shell in solid.voids.iter().chain([&solid.outer]) {
+                part_of[shell.0 as usize] = at;
+            }
+        }
+        let blank = || Self {
+            facets: Vec::new(),
+            vertices: Vec::new(),
+        };
+        let mut parts: Vec<Self> = (0..shells.solids.len().max(1)).map(|_| blank()).collect();
+        let part_of = |facet: FacetView<'_>| {
+            let shell = shells.shell_of.get(facet.key());
+            shell.map_or(0, |shell| part_of[shell.0 as usize])
+        };
+        for facet in brep.facets() {
+            parts[part_of(facet)].facets.push(facet);
+        }
+        for vertex in brep.vertices() {
+            // All facets around a vertex are of one shell.
+            let facet = vertex.outgoing().facet();
+            parts[part_of(facet)].vertices.push(vertex);
+        }
+        parts
+    }
+
+    fn write(
+        &self,
+        number: usize,
+        count: &impl Fn(VertexView<'_>) -> u32,
+        used: &[MaterialId],
+        xml: &mut Writer<impl Write>,
+    ) -> io::Result<()> {
+        let id = (FIRST_OBJECT + number).to_string();
+        let name = format!("solid_{}", number + 1);
+        // The object's own material, which triangles need not repeat.
+        let own = self.facets.first().map(|facet| index(used, *facet));
+        let own = own.unwrap_or_default();
+        let own_index = own.to_string();
+        let attributes = [
+            ("id", id.as_str()),
+            ("name", name.as_str()),
+            ("type", "model"),
+            ("pid", "1"),
+            ("pindex", own_index.as_str()),
+        ];
+        let object = xml.create_element("object").with_attributes(attributes);
+        object.write_inner_content(|xml| {
+            xml.create_element("mesh").write_inner_content(|xml| {
+                xml.create_element("vertices")
+                    .write_inner_content(|xml| self.write_vertices(xml))?;
+                xml.create_element("triangles")
+                    .write_inner_content(|xml| self.write_triangles(own, count, used, xml))?;
+                Ok(())
+            })?;
             Ok(())
         })?;
         Ok(())
-    })?;
-    Ok(())
-}
-
-fn vertices(brep: &Valid<Brep>, xml: &mut Writer<impl Write>) -> io::Result<()> {
-    for vertex in brep.vertices() {
-        let [x, y, z] = vertex
-            .position()
-            .to_array()
-            .map(|number| Decimal(number).to_string());
-        let attributes = [("x", x.as_str()), ("y", y.as_str()), ("z", z.as_str())];
-        xml.write_event(Event::Empty(
-            BytesStart::new("vertex").with_attributes(attributes),
-        ))?;
     }
-    Ok(())
-}
 
-fn triangles(
-    brep: &Valid<Brep>,
-    used: &[MaterialId],
-    xml: &mut Writer<impl Write>,
-) -> io::Result<()> {
-    let numbers = brep.number_vertices();
-    for facet in brep.facets() {
-        let [a, b, c] = facet
-            .vertices()
-            .map(|vertex| numbers[vertex.key()].to_string());
-        let attributes = [("v1", a.as_str()), ("v2", b.as_str()), ("v3", c.as_str())];
-        let mut triangle = BytesStart::new("triangle").with_attributes(attributes);
-        // The first material is the object's own.
-        let material = used.partition_point(|&id| id < facet.material());
-        if material > 0 {
-            triangle.push_attribute(("pid", "1"));
-            triangle.push_attribute(("p1", material.to_string().as_str()));
+    fn write_vertices(&self, xml: &mut Writer<impl Write>) -> io::Result<()> {
+        for vertex in &self.vertices {
+            let [x, y, z] = vertex
+                .position()
+                .to_array()
+                .map(|number| Decimal(number).to_string());
+            let attributes = [("x", x.as_str()), ("y", y.as_str()), ("z", z.as_str())];
+            xml.write_event(Event::Empty(
+                BytesStart::new("vertex").with_attributes(attributes),
+            ))?;
         }
-        xml.write_event(Event::Empty(triangle))?;
+        Ok(())
     }
+
+    fn write_triangles(
+        &self,
+        own: usize,
+        count: &impl Fn(VertexView<'_>) -> u32,
+        used: &[MaterialId],
+        xml: &mut Writer<impl Write>,
+    ) -> io::Result<()> {
+        for &facet in &self.facets {
+            let [a, b, c] = facet.vertices().map(|vertex| count(vertex).to_string());
+            let attributes = [("v1", a.as_str()), ("v2", b.as_str()), ("v3", c.as_str())];
+            let mut triangle = BytesStart::new("triangle").with_attributes(attributes);
+            let material = index(used, facet);
+            if material != own {
+                triangle.push_attribute(("pid", "1"));
+                triangle.push_attribute(("p1", material.to_string().as_str()));
+            }
+            xml.write_event(Event::Empty(triangle))?;
+        }
+        Ok(())
+    }
+}
+
+/// The place of a facet's material among the base materials.
+fn index(used: &[MaterialId], facet: FacetView<'_>) -> usize {
+    used.partition_point(|&id| id < facet.material())
+}
+
+/// The object that holds all solids.
+fn assembly(solids: usize, xml: &mut Writer<impl Write>) -> io::Result<()> {
+    let id = (FIRST_OBJECT + solids).to_string();
+    let attributes = [("id", id.as_str()), ("name", "model"), ("type", "model")];
+    let object = xml.create_element("object").with_attributes(attributes);
+    object.write_inner_content(|xml| {
+        xml.create_element("components")
+            .write_inner_content(|xml| {
+                for number in 0..solids {
+                    let id = (FIRST_OBJECT + number).to_string();
+                    let component = xml.create_element("component");
+                    component
+                        .with_attribute(("objectid", id.as_str()))
+                        .write_empty()?;
+                }
+                Ok(())
+            })?;
+        Ok(())
+    })?;
     Ok(())
 }
 
@@ -233,7 +333,19 @@ mod tests {
         // The cubes touch in a corner: two vertices at one place.
         assert_eq!(text.matches("<vertex ").count(), 16);
         assert_eq!(text.matches("<triangle ").count(), 24);
-        assert_eq!(text.matches(r#"pid="1" p1="1""#).count(), 12);
+        // A solid each, of one material each, together in one object.
+        assert_eq!(
+            text.matches(r#"<object id="2" name="solid_1" type="model" pid="1" pindex="0""#)
+                .count(),
+            1
+        );
+        assert_eq!(
+            text.matches(r#"<object id="3" name="solid_2" type="model" pid="1" pindex="1""#)
+                .count(),
+            1
+        );
+        assert_eq!(text.matches("p1=").count(), 0);
+        assert!(text.contains(r#"<item objectid="4"/>"#));
         assert!(text.contains(r##"displaycolor="#0080FF40""##));
         assert!(text.contains(r#"unit="inch""#));
     }
