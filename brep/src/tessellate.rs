@@ -11,34 +11,33 @@
 //! 3. if volumes are to be unbiased, vertices move off the surfaces by a part of the tolerance
 //!    (`fit`);
 //! 4. planar faces are filled from their loops (`crate::triangulate`);
-//! 5. triangles that pass through others are looked for, and their faces done more finely
-//!    (`crossings`).
+//! 5. triangles that pass through others are looked for (`crossings`) and split (`mend`); where
+//!    that does not help, their faces are done again more finely.
 //!
 //! Everything happens by splitting, flipping and collapsing edges of one closed mesh, so it
 //! stays closed, and of the topology it had.
 
+mod assemble;
 mod chains;
 mod crossings;
 mod decimate;
 mod fit;
 mod flips;
 mod measure;
+mod mend;
 mod patchwork;
 mod sheet;
 mod split;
 mod straighten;
 
 use crate::group::{FaceId, Groups};
-use crate::stitch::stitch;
 use crate::topology::Brep;
-use crate::triangulate::fill_loops;
 use crate::validate::Valid;
 use csg::Solid;
 pub use fit::Fit;
 use glam::DVec3;
 use patchwork::{NONE, Patchwork, Role, index};
 use sheet::Sheet;
-use subdiv::{Fragments, Triangle, VertexKind};
 
 /// What [`tessellate`] did.
 #[derive(Clone, Copy, PartialEq, Debug, Default)]
@@ -62,13 +61,6 @@ const ROUNDS: usize = 6;
 
 /// Flips after one change, at most: they come to an end by themselves, but for rounding.
 const FLIPS: usize = 64;
-
-/// What the tolerance of a face is multiplied by when its facets pass through others, or stand
-/// across it.
-const FINER: f64 = 0.25;
-
-/// What it is multiplied by when facets are too far off after they were moved.
-const A_LITTLE_FINER: f64 = 0.75;
 
 /// Replaces the facets of a boundary by such as its surfaces need at this tolerance, in model
 /// units. `solid` is what the boundary was made from; `fit` says on which side of the surfaces
@@ -96,9 +88,8 @@ pub fn tessellate(
         if fit == Fit::Mean {
             run.fit_mean(tolerance);
         }
-        let troubled = match run.facets(tolerance) {
-            Ok(fragments) => {
-                let result = stitch(&fragments).ok()?.validate().ok()?;
+        match run.mended(tolerance) {
+            Ok(result) => {
                 let counts = Tessellated {
                     faces: groups.faces.len(),
                     refinements: round,
@@ -109,10 +100,12 @@ pub fn tessellate(
                 };
                 return Some((result, counts));
             }
-            Err(faces) => faces,
-        };
-        for (face, finer) in troubled {
-            tolerances[face] *= finer;
+            Err(troubles) if troubles.is_empty() => return None,
+            Err(troubles) => {
+                for (face, finer) in assemble::finer_faces(&troubles) {
+                    tolerances[face] *= finer;
+                }
+            }
         }
     }
     None
@@ -310,21 +303,6 @@ impl<'a> Run<'a> {
         self.flip_all(true);
     }
 
-    /// Faces with facets that deviate too much, or stand across their surface.
-    fn troubled(&self, tolerance: f64) -> Vec<(usize, f64)> {
-        let mut faces = Vec::new();
-        for facet in self.mesh.facets() {
-            let shape = self.shape_of(3 * facet);
-            let face = self.face_of(3 * facet);
-            if shape.error > 1.0 + 1e-9 || shape.lean > measure::UPRIGHT {
-                faces.push((face, FINER));
-            } else if self.deviation(facet) > tolerance * (1.0 + 1e-9) {
-                faces.push((face, A_LITTLE_FINER));
-            }
-        }
-        faces
-    }
-
     fn largest_deviation(&self) -> f64 {
         let facets = self.mesh.facets();
         facets
@@ -340,99 +318,5 @@ impl<'a> Run<'a> {
             self.mesh.crease[h as usize] == name && self.mesh.face[h as usize / 3] as usize == left
         })
         .unwrap_or(NONE)
-    }
-
-    /// The boundary as triangles, within `tolerance` of the surfaces, or the faces that did not
-    /// come out well, each with what its tolerance should be multiplied by.
-    fn facets(&self, tolerance: f64) -> Result<Fragments, Vec<(usize, f64)>> {
-        let mut troubled = self.troubled(tolerance);
-        let mut loops: Vec<Vec<Vec<u32>>> = vec![Vec::new(); self.sheets.len()];
-        for (phantom, &role) in (0_u32..).zip(&self.mesh.roles) {
-            if role != Role::Phantom {
-                continue;
-            }
-            let first = self.mesh.outgoing[phantom as usize];
-            let face = self.mesh.face[first as usize / 3] as usize;
-            // The ring is counter-clockwise around the phantom, as the loop is around the face.
-            let around = self.mesh.ring(first).map(|spoke| self.mesh.target(spoke));
-            loops[face].push(around.collect());
-        }
-        let mut normals = vec![DVec3::ZERO; self.sheets.len()];
-        for (face, normal) in normals.iter_mut().enumerate() {
-            if let Sheet::Plane { normal: n, .. } = self.sheets[face] {
-                *normal = *n * self.plane_sense(&loops[face], *n);
-            }
-        }
-        let mut of_face: Vec<Vec<[u32; 3]>> = vec![Vec::new(); self.sheets.len()];
-        for facet in self.mesh.facets() {
-            let face = self.mesh.face[facet as usize] as usize;
-            if !self.sheets[face].is_plane() {
-                of_face[face].push(self.mesh.corners(facet));
-            }
-        }
-        for (face, loops) in loops.iter().enumerate() {
-            if !self.sheets[face].is_plane() {
-                continue;
-            }
-            match fill_loops(loops, &self.mesh.positions, normals[face]) {
-                Ok(triangles) => of_face[face] = triangles,
-                Err(_) => troubled.push((face, FINER)),
-            }
-        }
-        if !troubled.is_empty() {
-            // Of several reasons in one face the graver one counts.
-            troubled.sort_by(|(f, x), (g, y)| f.cmp(g).then(x.total_cmp(y)));
-            troubled.dedup_by_key(|(face, _)| *face);
-            return Err(troubled);
-        }
-        let crossing = self.crossing_faces(&of_face);
-        if !crossing.is_empty() {
-            return Err(crossing.into_iter().map(|face| (face, FINER)).collect());
-        }
-        let mut triangles = Vec::new();
-        for (face, corners) in self.groups.faces.iter().zip(of_face) {
-            triangles.extend(corners.into_iter().map(|vertices| Triangle {
-                vertices,
-                primitive: face.primitive,
-                sense: face.sense,
-                material: face.material,
-            }));
-        }
-        Ok(Fragments {
-            kinds: vec![VertexKind::Interior; self.mesh.positions.len()],
-            positions: self.mesh.positions.clone(),
-            triangles,
-        })
-    }
-
-    /// Faces with triangles that pass through others.
-    fn crossing_faces(&self, of_face: &[Vec<[u32; 3]>]) -> Vec<usize> {
-        let triangles: Vec<[u32; 3]> = of_face.iter().flatten().copied().collect();
-        let faces: Vec<usize> = of_face
-            .iter()
-            .enumerate()
-            .flat_map(|(face, triangles)| std::iter::repeat_n(face, triangles.len()))
-            .collect();
-        let pairs = crossings::crossings(&self.mesh.positions, &triangles);
-        let mut crossing: Vec<usize> = pairs.into_flattened();
-        for triangle in &mut crossing {
-            *triangle = faces[*triangle];
-        }
-        crossing.sort_unstable();
-        crossing.dedup();
-        crossing
-    }
-
-    /// 1 if loops with the face to their left run counter-clockwise around `normal`, else −1.
-    fn plane_sense(&self, loops: &[Vec<u32>], normal: DVec3) -> f64 {
-        let mut area = DVec3::ZERO;
-        for corners in loops {
-            let first = self.mesh.position(corners[0]);
-            for pair in corners.windows(2) {
-                let [a, b] = [pair[0], pair[1]].map(|v| self.mesh.position(v) - first);
-                area += a.cross(b);
-            }
-        }
-        if area.dot(normal) < 0.0 { -1.0 } else { 1.0 }
     }
 }

@@ -76,12 +76,20 @@ impl Run<'_> {
 
     /// Takes vertices of the subdivision off the B-Rep edges that have got points of their own.
     pub(super) fn collapse_along_chains(&mut self, mut vertices: Vec<u32>) {
-        for limit in [1.0, 4.0, f64::INFINITY] {
+        // In the end by all means, for the edge may have a double elsewhere: where two solids
+        // touch along it. What leans then is straightened afterwards.
+        for (limit, may_lean) in [
+            (1.0, 0.0),
+            (4.0, 0.0),
+            (f64::INFINITY, 0.0),
+            (f64::INFINITY, f64::INFINITY),
+        ] {
             loop {
                 let before = vertices.len();
                 vertices.retain(|&vertex| {
                     let first = self.mesh.outgoing[vertex as usize];
-                    let around = self.around(first);
+                    let mut around = self.around(first);
+                    around.lean += may_lean;
                     let best = (self.mesh.ring(first))
                         .filter(|&h| self.mesh.crease[h as usize] != NONE)
                         .filter_map(|h| Some((self.collapsed(h, around, limit)?, h)))

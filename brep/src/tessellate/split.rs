@@ -91,19 +91,22 @@ impl Run<'_> {
 
     /// Splits the edge of a facet that deviates most; returns a half-edge from the new vertex.
     fn split_worst_edge(&mut self, facet: u32) -> Option<u32> {
-        let face = self.mesh.face[facet as usize] as usize;
         let worst = [3 * facet, 3 * facet + 1, 3 * facet + 2]
             .into_iter()
             .max_by(|&g, &h| self.mesh.chord[g as usize].total_cmp(&self.mesh.chord[h as usize]))?;
-        let [a, b] = [self.mesh.origin[worst as usize], self.mesh.target(worst)]
-            .map(|v| self.mesh.position(v));
+        self.split_in_the_middle(worst)
+    }
+
+    /// Splits an edge of a curved face, or a B-Rep edge, above its middle; returns a half-edge from
+    /// the new vertex.
+    pub(super) fn split_in_the_middle(&mut self, h: u32) -> Option<u32> {
+        let [a, b] =
+            [self.mesh.origin[h as usize], self.mesh.target(h)].map(|v| self.mesh.position(v));
         let middle = a.midpoint(b);
-        let crease = self.mesh.crease[worst as usize];
+        let crease = self.mesh.crease[h as usize];
         let (position, role) = if crease == NONE {
-            (
-                self.sheets[face].project(middle, self.rounding)?,
-                Role::Inside,
-            )
+            let sheet = self.sheets[self.face_of(h)];
+            (sheet.project(middle, self.rounding)?, Role::Inside)
         } else {
             let faces = self.groups.edges[crease as usize].faces;
             let sheets = faces.map(|FaceId(face)| self.sheets[face as usize]);
@@ -112,6 +115,6 @@ impl Run<'_> {
         if position.distance(middle) > 0.6 * a.distance(b) {
             return None;
         }
-        Some(self.split(worst, position, role))
+        Some(self.split(h, position, role))
     }
 }
