@@ -21,6 +21,7 @@ mod properties;
 mod report;
 mod run;
 mod shell;
+mod streams;
 mod summary;
 mod talk;
 mod thesis;

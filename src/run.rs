@@ -5,6 +5,7 @@ use crate::failure::Failure;
 use crate::input::Input;
 use crate::memory;
 use crate::report::SettingsReport;
+use crate::streams::{Loop, find_loop};
 use crate::values::Tolerance;
 use csg::Aabb;
 use glam::DVec3;
@@ -292,14 +293,26 @@ pub(crate) fn check_targets(input: &Input, targets: &[&Target]) -> Result<(), Fa
         if targets.iter().take(at).any(|other| other == target) {
             return Err(Failure::Usage(format!("{}: given twice", target.name())));
         }
-        if let (Target::File(target), Input::File(input)) = (target, input) {
-            let same = target == input
-                || matches!((target.canonicalize(), input.canonicalize()), (Ok(a), Ok(b)) if a == b);
-            if same {
-                let name = target.display();
-                return Err(Failure::Usage(format!(
-                    "{name}: the output would replace the input"
-                )));
+        let (name, source) = (target.name(), input.name());
+        match find_loop(input, target) {
+            None => {}
+            Some(Loop::File) if matches!((target, input), (Target::File(_), Input::File(_))) => {
+                let text = format!("{name}: the output would replace the input");
+                return Err(Failure::Usage(text));
+            }
+            Some(Loop::File) => {
+                let text = format!(
+                    "{source} and {name} are one file: a shell empties it before it is read (write \
+                     to another file, then rename it)"
+                );
+                return Err(Failure::Usage(text));
+            }
+            Some(Loop::Pipe) => {
+                let text = format!(
+                    "{source} and {name} are the ends of one pipe: each would wait for the other \
+                     (read from a file, or write to one)"
+                );
+                return Err(Failure::Usage(text));
             }
         }
     }

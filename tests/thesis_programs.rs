@@ -307,3 +307,64 @@ fn bad_files_are_refused_with_the_byte() {
     }
     assert!(!folder.join("never").exists() && !folder.join("never.glb").exists());
 }
+
+/// What is written must not be what is read, however the shell was told so.
+#[cfg(unix)]
+#[test]
+fn programs_that_read_what_they_write_are_refused() {
+    use std::fs::{File, OpenOptions, read};
+    use std::process::Stdio;
+    let folder = files();
+    let folder = folder.path();
+    let start = |args: &[&str], stdin: Stdio, stdout: Stdio| {
+        let mut command = Command::new(assert_cmd::cargo::cargo_bin!("csg2brep"));
+        let command = command.current_dir(folder).args(args);
+        let child = command.stdin(stdin).stdout(stdout).stderr(Stdio::piped());
+        let output = child.spawn().unwrap().wait_with_output().unwrap();
+        (
+            output.status.code(),
+            String::from_utf8(output.stderr).unwrap(),
+        )
+    };
+    let tree = folder.join("cube.CSG");
+    std::fs::copy(folder.join("bored.CSG"), &tree).unwrap();
+    let before = read(&tree).unwrap();
+    let append = || OpenOptions::new().append(true).open(&tree).unwrap().into();
+    let loops: [(&[&str], Stdio, Stdio); 4] = [
+        (
+            &["thesis", "csg2cspg"],
+            File::open(&tree).unwrap().into(),
+            append(),
+        ),
+        (&["thesis", "csg2cspg", "cube.CSG"], Stdio::null(), append()),
+        (
+            &["thesis", "csg2cspg", "--output", "cube.CSG"],
+            File::open(&tree).unwrap().into(),
+            Stdio::null(),
+        ),
+        (
+            &["-", "-o", "cube.CSG"],
+            File::open(&tree).unwrap().into(),
+            Stdio::null(),
+        ),
+    ];
+    for (args, stdin, stdout) in loops {
+        let (code, said) = start(args, stdin, stdout);
+        assert_eq!(code, Some(2), "{args:?}: {said}");
+        assert!(said.contains("are one file: a shell empties it"), "{said}");
+    }
+    assert_eq!(read(&tree).unwrap(), before);
+
+    // One pipe at both ends: without the check the program would wait for ever.
+    let (reader, writer) = std::io::pipe().unwrap();
+    for program in ["csg2cspg", "subsimpl", "vis2lcg"] {
+        let stdin = reader.try_clone().unwrap().into();
+        let (code, said) = start(
+            &["thesis", program],
+            stdin,
+            writer.try_clone().unwrap().into(),
+        );
+        assert_eq!(code, Some(2), "{program}: {said}");
+        assert!(said.contains("are the ends of one pipe"), "{said}");
+    }
+}

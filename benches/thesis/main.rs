@@ -4,10 +4,12 @@
 //! cargo bench --bench thesis
 //! cargo bench --bench thesis -- rays
 //! cargo bench --bench thesis -- reduction
+//! cargo bench --bench thesis -- functions
 //! ```
 //!
 //! One thread. `docs/thesis.md` says what the figures mean.
 
+mod functions;
 mod rays;
 mod reduction;
 mod solids;
@@ -29,6 +31,7 @@ fn main() {
     for (name, table) in [
         ("rays", rays::table as fn()),
         ("reduction", reduction::table),
+        ("functions", functions::table),
     ] {
         if std::env::args().any(|a| a == name) {
             table();
@@ -42,6 +45,7 @@ fn main() {
     criteria();
     rays::table();
     reduction::table();
+    functions::table();
 }
 
 /// The shortest of some runs, in seconds.

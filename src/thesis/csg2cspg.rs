@@ -4,7 +4,7 @@
 use super::half_spaces::HalfSpaces;
 use super::pipe::{Codes, Order, Pipe, read_input};
 use crate::failure::Failure;
-use crate::run::{Target, clip_box};
+use crate::run::clip_box;
 use crate::talk::Talk;
 use clap::Args;
 use csg::{Aabb, Polynomial};
@@ -60,6 +60,7 @@ pub(crate) fn run(args: Csg2CspgArgs, talk: Talk) -> Result<(), Failure> {
     } else {
         MatrixForm::Rows
     };
+    let target = args.pipe.target()?;
     let operators = args.codes.operators();
     let (name, tree) = read_input(&args.pipe.input, |bytes| {
         solid::read(bytes, operators, form)
@@ -70,7 +71,6 @@ pub(crate) fn run(args: Csg2CspgArgs, talk: Talk) -> Result<(), Failure> {
         let count = sectors.sectors.first().map_or(0, |s| s.primitives.len());
         format!("{count} half-spaces in 6 sectors")
     });
-    let target = Target::new(args.pipe.output);
     crate::output::to_target(&target, |mut out| {
         let order = args.order.bytes();
         Ok(sectors::write(&sectors, operators, order, &mut out)?)

@@ -3,6 +3,7 @@
 
 use crate::failure::Failure;
 use crate::input::Input;
+use crate::run::{Target, check_targets};
 use clap::Args;
 use io::thesis::tree::Operators;
 use io::thesis::{ByteOrder, Decoded, Error};
@@ -17,6 +18,15 @@ pub(super) struct Pipe {
     /// The file to write; `-` is standard output
     #[arg(long, value_name = "FILE", default_value = "-")]
     pub(super) output: PathBuf,
+}
+
+impl Pipe {
+    /// Where to write, unless that is what is read.
+    pub(super) fn target(&self) -> Result<Target, Failure> {
+        let target = Target::new(self.output.clone());
+        check_targets(&Input::new(self.input.clone()), &[&target])?;
+        Ok(target)
+    }
 }
 
 /// Codes of operators in binary files.

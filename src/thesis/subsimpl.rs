@@ -5,7 +5,6 @@ use super::sector_solid::{Group, SectorSolid};
 use super::statistics::{Language, statistics};
 use crate::failure::Failure;
 use crate::output;
-use crate::run::Target;
 use crate::talk::Talk;
 use clap::Args;
 use csg::Sense;
@@ -94,6 +93,7 @@ fn length(text: &str) -> Result<f64, String> {
 
 pub(crate) fn run(args: SubsimplArgs, talk: Talk) -> Result<(), Failure> {
     let start = Instant::now();
+    let target = args.pipe.target()?;
     let operators = args.codes.operators();
     let (name, solid) = read_input(&args.pipe.input, |bytes| sectors::read(bytes, operators))?;
     let collect = match args.kind {
@@ -109,7 +109,6 @@ pub(crate) fn run(args: SubsimplArgs, talk: Talk) -> Result<(), Failure> {
         let outcome = subdivide(&sector_solid.formula, &group.roots, &rule, collect);
         outcomes.push(outcome.map_err(|error| Failure::from(error).of_input(&name))?);
     }
-    let target = Target::new(args.pipe.output);
     output::to_target(&target, |mut out| {
         let order = args.order.bytes();
         match collect {

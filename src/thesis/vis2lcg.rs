@@ -3,7 +3,6 @@
 use super::pipe::{Order, Pipe, read_input};
 use crate::failure::Failure;
 use crate::output;
-use crate::run::Target;
 use clap::Args;
 use io::thesis::approximation;
 use io::thesis::wireframe::{self, Wireframe};
@@ -18,9 +17,10 @@ pub(crate) struct Vis2LcgArgs {
 }
 
 pub(crate) fn run(args: Vis2LcgArgs) -> Result<(), Failure> {
+    let target = args.pipe.target()?;
     let (_, faces) = read_input(&args.pipe.input, approximation::read)?;
     let order = args.order.bytes();
-    output::to_target(&Target::new(args.pipe.output), |mut out| {
+    output::to_target(&target, |mut out| {
         let mesh = Wireframe::from_faces(&faces.value)?;
         Ok(wireframe::write(&mesh, order, &mut out)?)
     })

@@ -18,7 +18,7 @@ use crate::snap::LeafPolynomial;
 use crate::vertices::{CellSide, VertexNamer};
 use crate::volume::wedge;
 use crate::walk::Frame;
-use csg::{FormulaNode, Sense};
+use csg::{FormulaNode, LocalizeScratch, PrimitiveId, Sense, Ternary, localize};
 
 /// A leaf that could not be extracted.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
@@ -37,12 +37,54 @@ pub(crate) struct Extractor {
     ring: Vec<Corner>,
     boundary: Vec<u32>,
     triangulator: PieceTriangulator,
+    pruned: Vec<FormulaNode>,
+    scratch: LocalizeScratch,
     /// Where the last leaf had one primitive only: the fraction of the leaf on its negative side,
     /// and the sense in which the solid lies there.
     pub(crate) cut: Option<(f64, Sense)>,
 }
 
 impl Extractor {
+    /// Appends the boundary of the affine functions in a frame (all of degree 1), whose signs at
+    /// the vertices prune its formula first. Returns the number of nodes that are left of it; 0
+    /// where there is no boundary.
+    ///
+    /// # Errors
+    /// As [`Self::extract`].
+    pub(crate) fn extract_affine(
+        &mut self,
+        simplex: &Simplex,
+        frame: &Frame,
+        mesh: &mut MeshBuilder,
+    ) -> Result<usize, LeafError> {
+        let value = |p: PrimitiveId| {
+            let found = frame.active.binary_search_by_key(&p.0, |a| a.primitive);
+            let Ok(at) = found else {
+                return Ternary::Unknown;
+            };
+            let signs = frame.values_of(&frame.active[at]).map(vertex_sign);
+            if signs != [signs[0]; 4] {
+                Ternary::Unknown
+            } else if signs[0] == Sign::Negative {
+                Ternary::In
+            } else {
+                Ternary::Out
+            }
+        };
+        let mut pruned = std::mem::take(&mut self.pruned);
+        pruned.clear();
+        let result = localize(&frame.formula, value, &mut pruned, &mut self.scratch);
+        let extracted = if result == Ternary::Unknown {
+            self.extract(simplex, &pruned, frame, mesh)
+        } else {
+            pruned.clear();
+            Ok(())
+        };
+        let left = pruned.len();
+        self.pruned = pruned;
+        extracted.map(|()| left)
+    }
+
     /// Appends the boundary in `simplex` to `mesh`.
     ///
     /// `formula`: pruned to primitives that change sign among the simplex' vertices; `frame`

@@ -43,6 +43,7 @@ mod direction;
 mod error;
 mod extract;
 mod fragments;
+pub mod functions;
 mod halving;
 mod harvest;
 mod hessian;

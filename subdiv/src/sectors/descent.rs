@@ -6,7 +6,6 @@ use crate::error::Error;
 use crate::extract::{Extractor, LeafError};
 use crate::halving::halve;
 use crate::mesh::MeshBuilder;
-use crate::predicates::{Sign, vertex_sign};
 use crate::rounding::of_halving;
 use crate::simplex::Simplex;
 use crate::walk::{Active, Frame};
@@ -261,30 +260,11 @@ impl<'a> Descent<'a> {
         let linear = &mut self.linear;
         linear.clone_from(frame);
         linearize(linear);
-        let value = |p: PrimitiveId| {
-            let found = linear.active.binary_search_by_key(&p.0, |a| a.primitive);
-            let Ok(at) = found else {
-                return Ternary::Unknown;
-            };
-            let signs = linear.values_of(&linear.active[at]).map(vertex_sign);
-            if signs != [signs[0]; 4] {
-                Ternary::Unknown
-            } else if signs[0] == Sign::Negative {
-                Ternary::In
-            } else {
-                Ternary::Out
-            }
-        };
-        self.pruned.clear();
-        let result = localize(&linear.formula, value, &mut self.pruned, &mut self.scratch);
-        if result != Ternary::Unknown {
-            return Ok(());
-        }
         let start = self.mesh.triangles.len();
         let extracted = self
             .extractor
-            .extract(simplex, &self.pruned, linear, &mut self.mesh);
-        extracted.map_err(|LeafError::TooManyPrimitives(count)| {
+            .extract_affine(simplex, linear, &mut self.mesh);
+        let left = extracted.map_err(|LeafError::TooManyPrimitives(count)| {
             let place = simplex.vertices[0].position();
             Error::TooManySurfaces {
                 count,
@@ -293,7 +273,7 @@ impl<'a> Descent<'a> {
                 z: place.z,
             }
         })?;
-        if self.pruned.len() > 1 {
+        if left > 1 {
             for triangle in &mut self.mesh.triangles[start..] {
                 triangle.material = HYBRID;
             }
