@@ -22,6 +22,12 @@ pub(crate) fn find_loop(input: &Input, target: &Target) -> Option<Loop> {
     use std::os::fd::AsFd;
     use std::os::unix::fs::{FileTypeExt, MetadataExt};
 
+    if let (Input::File(from), Target::File(to)) = (input, target)
+        && from == to
+    {
+        // Also where neither exists yet.
+        return Some(Loop::File);
+    }
     let of_stream = |stream: &dyn AsFd| {
         let copy = stream.as_fd().try_clone_to_owned();
         copy.and_then(|copy| std::fs::File::from(copy).metadata())

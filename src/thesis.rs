@@ -37,9 +37,9 @@ pub(crate) fn run(command: ThesisCommand, talk: Talk) -> Result<(), Failure> {
     match command {
         ThesisCommand::Compare(args) => compare::run(args, talk),
         ThesisCommand::Csg2cspg(args) => csg2cspg::run(args, talk),
-        ThesisCommand::Subsimpl(args) => subsimpl::run(args, talk),
+        ThesisCommand::Subsimpl(args) => subsimpl::run(&args, talk),
         ThesisCommand::Propsimpl(args) => propsimpl::run(&args, talk),
         ThesisCommand::Visual(args) => visual::run(args),
-        ThesisCommand::Vis2lcg(args) => vis2lcg::run(args),
+        ThesisCommand::Vis2lcg(args) => vis2lcg::run(&args),
     }
 }

@@ -91,7 +91,7 @@ fn length(text: &str) -> Result<f64, String> {
     }
 }
 
-pub(crate) fn run(args: SubsimplArgs, talk: Talk) -> Result<(), Failure> {
+pub(crate) fn run(args: &SubsimplArgs, talk: Talk) -> Result<(), Failure> {
     let start = Instant::now();
     let target = args.pipe.target()?;
     let operators = args.codes.operators();
@@ -105,7 +105,7 @@ pub(crate) fn run(args: SubsimplArgs, talk: Talk) -> Result<(), Failure> {
     let sector_solid = SectorSolid::new(&solid);
     let mut outcomes = Vec::with_capacity(sector_solid.groups.len());
     for group in &sector_solid.groups {
-        let rule = rule(&args, group)?;
+        let rule = rule(args, group)?;
         let outcome = subdivide(&sector_solid.formula, &group.roots, &rule, collect);
         outcomes.push(outcome.map_err(|error| Failure::from(error).of_input(&name))?);
     }

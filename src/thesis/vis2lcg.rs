@@ -16,7 +16,7 @@ pub(crate) struct Vis2LcgArgs {
     order: Order,
 }
 
-pub(crate) fn run(args: Vis2LcgArgs) -> Result<(), Failure> {
+pub(crate) fn run(args: &Vis2LcgArgs) -> Result<(), Failure> {
     let target = args.pipe.target()?;
     let (_, faces) = read_input(&args.pipe.input, approximation::read)?;
     let order = args.order.bytes();
