@@ -17,7 +17,11 @@ struct BeforeAndAfter {
 
 fn merge(file: &str, tolerance: f64) -> BeforeAndAfter {
     let path = format!("{}/fixtures/{file}", env!("CARGO_MANIFEST_DIR"));
-    let model = stages::read(&fs::read_to_string(path).expect("a fixture"));
+    merge_text(&fs::read_to_string(path).expect("a fixture"), tolerance)
+}
+
+fn merge_text(text: &str, tolerance: f64) -> BeforeAndAfter {
+    let model = stages::read(text);
     let converted = stages::convert_model(&model, Rule::Tolerance(tolerance));
     let primitives = converted.solid.primitives.iter();
     let planes: Vec<bool> = primitives.map(|p| p.polynomial.degree() == 1).collect();
@@ -75,4 +79,66 @@ fn a_sponge_has_no_vertices_but_its_corners() {
     let corners = Groups::of(&sponge.merged).vertices.len();
     assert_eq!(sponge.merged.vertex_count(), corners);
     assert!(sponge.merged.facet_count() < sponge.leaves.facet_count());
+}
+
+/// Area of all facets of each material, in order of their numbers.
+fn areas(brep: &Brep) -> Vec<f64> {
+    let mut areas = Vec::new();
+    for facet in brep.facets() {
+        let at = facet.material().0 as usize;
+        areas.resize(areas.len().max(at + 1), 0.0);
+        areas[at] += facet.area_vector().length() / 2.0;
+    }
+    areas
+}
+
+#[test]
+fn materials_on_one_plane_keep_their_border() {
+    // A bar in a plate, flush above and below: the plate's own top is 2 by 2, the bar's 2 by 1.
+    let straight = merge_text(
+        "color([1,0,0,1]) { cube(size = [2, 2, 1]); } \
+         multmatrix([[1,0,0,1],[0,1,0,0.5],[0,0,1,0],[0,0,0,1]]) { \
+           color([0,0,1,1]) { cube(size = [3, 1, 1]); } }",
+        0.1,
+    );
+    assert_same_solid(&straight);
+    assert_eq!(straight.counts.kept, 0);
+    // 8 corners of the plate, 8 of the bar, none in the middle of the borders.
+    let counts = (
+        straight.merged.vertex_count(),
+        straight.merged.facet_count(),
+    );
+    assert_eq!(counts, (16, 28));
+    let found = areas(&straight.merged);
+    let plate = 2.0 * 4.0 + 3.0 * 2.0 + 2.0 * 0.5;
+    let bar = 2.0 * 2.0 + 2.0 * 2.0 + 1.0;
+    for (found, expected) in [(found[1], plate), (found[2], bar)] {
+        assert!((found - expected).abs() < 1e-12, "{found} {expected}");
+    }
+
+    // A peg in a plate, flush with its top: the border is a circle.
+    let round = merge_text(
+        "color([1,0,0,1]) { difference() { cube(size = [4, 4, 1], center = true); \
+           cylinder(h = 2, r1 = 1, r2 = 1, center = true, $fn = 0); } } \
+         color([0,0,1,1]) { cylinder(h = 1, r1 = 1, r2 = 1, center = true, $fn = 0); }",
+        0.01,
+    );
+    assert_same_solid(&round);
+    let [before, after] = [&round.leaves, &round.merged].map(|brep| areas(brep));
+    for (before, after) in before.iter().zip(&after) {
+        assert!((before - after).abs() < 1e-12 * 32.0, "{before} {after}");
+    }
+    // Two disks within 0.01 of the circle.
+    let disks = 2.0 * std::f64::consts::PI;
+    assert!(
+        (after[2] - disks).abs() < 4.0 * std::f64::consts::PI * 0.01,
+        "{after:?}"
+    );
+    let groups = Groups::of(&round.merged);
+    for vertex in round.merged.vertices() {
+        assert!(
+            vertex.ring().any(|h| groups.is_crease(h)),
+            "an inner vertex"
+        );
+    }
 }

@@ -34,7 +34,8 @@ pub struct Retriangulated {
 /// Triangulates all planar faces from their loops, by constrained Delaunay triangulation.
 ///
 /// No vertex is added or moved. Vertices inside planar faces disappear, and so do those in the
-/// middle of an edge between two planes, where that edge is straight but for rounding. Faces,
+/// middle of an edge between two planes, or of a border between two materials on one plane, where
+/// that edge is straight but for rounding. Materials keep their borders. Faces,
 /// edges, vertices, shells and genus stay what they are, volume and area up to rounding. Facets
 /// are ordered by face, in the order of [`Groups::faces`]. `is_plane` says of a primitive whether
 /// its polynomial has degree 1.

@@ -49,7 +49,7 @@ struct FaceOutline {
     chains: Vec<u32>,
 }
 
-/// A straight edge between two planar faces that has more than its two ends.
+/// A straight edge between two planar faces, or two materials on one plane, that has more than its two ends.
 struct Chain {
     faces: [usize; 2],
     /// Whether its inner vertices are left out.
@@ -152,13 +152,16 @@ impl Outlines {
         }
     }
 
-    /// Two different planes meet in a line: the vertices inside the edge are not needed.
+    /// Two different planes meet in a line: the vertices inside the edge are not needed. Neither
+    /// are those inside a straight border between two materials on one plane.
     fn add_chain(&mut self, brep: &Brep, groups: &Groups, edge: &Edge, allowed: f64) {
         let faces = edge.faces.map(|FaceId(face)| face as usize);
-        let [left, right] = faces.map(|face| groups.faces[face].primitive);
+        let [left, right] = faces.map(|face| groups.faces[face]);
+        // Faces of opposite senses on one plane lie on each other instead.
+        let is_border = left.primitive != right.primitive || left.sense == right.sense;
         let is_planar = faces.iter().all(|&face| self.faces[face].is_candidate);
         let ends = edge.ends.filter(|[start, end]| start != end);
-        let (true, true, Some(ends)) = (is_planar, left != right, ends) else {
+        let (true, true, Some(ends)) = (is_planar, is_border, ends) else {
             return;
         };
         let [start, end] = ends.map(|key| brep.vertex(key).position());
