@@ -1,7 +1,7 @@
 //! The command line as it is typed. [`run`](crate::run) turns it into what the program uses.
 
 use crate::thesis::ThesisCommand;
-use crate::values::{Bytes, PictureSize, Tolerance};
+use crate::values::{Bytes, PictureSize, Tolerance, Viewpoint};
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use clap_complete::Shell;
 use std::num::{NonZeroU64, NonZeroUsize};
@@ -51,7 +51,7 @@ pub(crate) struct Cli {
 pub(crate) enum Command {
     /// Convert a model, as without a command
     Convert(ConvertArgs),
-    /// Draw a picture of a model
+    /// Draw a picture of a model, or make a page to look at it from all sides
     View(ViewArgs),
     /// Print what a model consists of, without converting it
     Info(InfoArgs),
@@ -249,15 +249,22 @@ pub(crate) struct ViewArgs {
     pub(crate) input: PathBuf,
     #[command(flatten)]
     pub(crate) model: ModelArgs,
-    /// The PNG picture to write; `-` is standard output
+    /// The PNG picture to write, or the HTML page with a viewer in it, by the extension; `-` is
+    /// standard output, for a picture
     #[arg(short, long, value_name = "FILE")]
     pub(crate) output: PathBuf,
     /// Width and height in pixels
     #[arg(long, value_name = "WxH", default_value = "1200x900")]
     pub(crate) size: PictureSize,
-    /// Where the viewer stands
-    #[arg(long, value_name = "SIDE", default_value = "iso")]
-    pub(crate) from: Side,
+    /// Where the viewer stands: iso, front, back, left, right, top, bottom, or a direction from the
+    /// model such as 1,-2,0.5
+    #[arg(
+        long,
+        value_name = "SIDE|X,Y,Z",
+        default_value = "iso",
+        allow_hyphen_values = true
+    )]
+    pub(crate) from: Viewpoint,
     /// Show the true solid: a ray for each sample, traced through the subdivision. The mesh only
     /// casts the shadows
     #[arg(long)]
@@ -347,25 +354,6 @@ pub(crate) enum MeshInputFormat {
     Threemf,
     /// PLY, text or binary
     Ply,
-}
-
-/// Where the viewer of a picture stands.
-#[derive(ValueEnum, Clone, Copy, PartialEq, Eq, Debug)]
-pub(crate) enum Side {
-    /// In front, to the right and above
-    Iso,
-    /// At -y
-    Front,
-    /// At +y
-    Back,
-    /// At -x
-    Left,
-    /// At +x
-    Right,
-    /// At +z
-    Top,
-    /// At -z
-    Bottom,
 }
 
 /// How polynomials are bounded in a simplex.

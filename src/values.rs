@@ -1,5 +1,6 @@
 //! Values on the command line: each has one spelling, one range and one complaint.
 
+use glam::DVec3;
 use std::num::NonZeroU32;
 use std::str::FromStr;
 
@@ -107,6 +108,39 @@ impl FromStr for PictureSize {
     }
 }
 
+/// Where the viewer of a picture stands: a direction from the model, not zero.
+#[derive(Clone, Copy, PartialEq, Debug)]
+pub(crate) struct Viewpoint(pub(crate) DVec3);
+
+impl FromStr for Viewpoint {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let named = match text {
+            "iso" => Some(DVec3::new(1.0, -1.0, 1.0)),
+            "front" => Some(DVec3::NEG_Y),
+            "back" => Some(DVec3::Y),
+            "left" => Some(DVec3::NEG_X),
+            "right" => Some(DVec3::X),
+            "top" => Some(DVec3::Z),
+            "bottom" => Some(DVec3::NEG_Z),
+            _ => None,
+        };
+        if let Some(direction) = named {
+            return Ok(Self(direction));
+        }
+        let numbers: Result<Vec<f64>, _> = text.split(',').map(|n| n.trim().parse()).collect();
+        let direction = numbers
+            .ok()
+            .and_then(|list| <[f64; 3]>::try_from(list).ok());
+        let direction = direction.and_then(|list| DVec3::from(list).try_normalize());
+        direction.map(Self).ok_or_else(|| {
+            "expected iso, front, back, left, right, top, bottom, or a direction such as 1,-2,0.5"
+                .to_owned()
+        })
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -129,6 +163,15 @@ mod tests {
         assert_eq!("17".parse(), Ok(Bytes(17)));
         for wrong in ["", "G", "0", "-4G", "4X", "1e30", "nan"] {
             assert!(wrong.parse::<Bytes>().is_err(), "{wrong}");
+        }
+    }
+
+    #[test]
+    fn viewpoints_are_sides_or_directions() {
+        assert_eq!("top".parse(), Ok(Viewpoint(DVec3::Z)));
+        assert_eq!("0,-3,0".parse(), Ok(Viewpoint(DVec3::NEG_Y)));
+        for wrong in ["", "up", "0,0,0", "1,2", "1,2,3,4", "nan,0,1", "1,,2"] {
+            assert!(wrong.parse::<Viewpoint>().is_err(), "{wrong}");
         }
     }
 

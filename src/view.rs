@@ -1,6 +1,6 @@
-//! `csg2brep view IN -o OUT.png`: a picture of a model.
+//! `csg2brep view IN -o OUT.png`: a picture of a model, or a page to look at it from all sides.
 
-use crate::args::{Side, ViewArgs};
+use crate::args::ViewArgs;
 use crate::convert::new_report;
 use crate::failure::Failure;
 use crate::output;
@@ -9,8 +9,10 @@ use crate::progress::Progress;
 use crate::run::{Job, Target, check_targets};
 use crate::summary::summary;
 use crate::talk::Talk;
-use crate::values::PictureSize;
+use crate::values::{PictureSize, Viewpoint};
 use brep::Shading;
+use glam::DVec3;
+use io::write::page;
 use io::write::picture::{self, Options, View};
 use std::time::Instant;
 
@@ -20,7 +22,16 @@ pub(crate) fn run(args: ViewArgs, talk: Talk) -> Result<(), Failure> {
     let target = Target::new(args.output);
     let job = Job::new(args.input, &args.model)?;
     check_targets(&job.input, &[&target])?;
+    let is_page = is_page(&target);
+    if is_page && args.raytrace {
+        let text = "--raytrace draws pictures only: leave it out, or write a .png file";
+        return Err(Failure::Usage(text.to_owned()));
+    }
     let options = options(args.size, args.from);
+    let page = page::Options {
+        title: job.input.name(),
+        toward_eye: args.from.0,
+    };
 
     let mut report = new_report(&job);
     let progress = Progress::new(talk.is_quiet());
@@ -37,6 +48,9 @@ pub(crate) fn run(args: ViewArgs, talk: Talk) -> Result<(), Failure> {
         }
         let shading = Shading::on_surfaces(&boundary.brep, &boundary.solid);
         let materials = &boundary.solid.materials;
+        if is_page {
+            return page::write(&boundary.brep, &shading, materials, &page, &mut out);
+        }
         picture::write_shaded(&boundary.brep, &shading, materials, &options, &mut out)
     })?;
     drop(progress);
@@ -45,19 +59,43 @@ pub(crate) fn run(args: ViewArgs, talk: Talk) -> Result<(), Failure> {
     Ok(())
 }
 
-fn options(size: PictureSize, from: Side) -> Options {
+/// Whether the file's name asks for a page.
+fn is_page(target: &Target) -> bool {
+    let Target::File(path) = target else {
+        return false;
+    };
+    let extension = path
+        .extension()
+        .map(|e| e.to_string_lossy().to_ascii_lowercase());
+    matches!(extension.as_deref(), Some("html" | "htm"))
+}
+
+fn options(size: PictureSize, Viewpoint(from): Viewpoint) -> Options {
     Options {
         width: size.width.get(),
         height: size.height.get(),
-        view: match from {
-            Side::Iso => View::Isometric,
-            Side::Front => View::Front,
-            Side::Back => View::Back,
-            Side::Left => View::Left,
-            Side::Right => View::Right,
-            Side::Top => View::Top,
-            Side::Bottom => View::Bottom,
-        },
+        view: view(from),
         ..Options::default()
     }
+}
+
+/// The view from a direction; those along axes are exact.
+fn view(from: DVec3) -> View {
+    let named = [
+        (DVec3::new(1.0, -1.0, 1.0), View::Isometric),
+        (DVec3::NEG_Y, View::Front),
+        (DVec3::Y, View::Back),
+        (DVec3::NEG_X, View::Left),
+        (DVec3::X, View::Right),
+        (DVec3::Z, View::Top),
+        (DVec3::NEG_Z, View::Bottom),
+    ];
+    let found = named.into_iter().find(|(direction, _)| *direction == from);
+    found.map_or_else(
+        || View::Direction {
+            azimuth_deg: from.y.atan2(from.x).to_degrees(),
+            elevation_deg: from.z.atan2(from.truncate().length()).to_degrees(),
+        },
+        |(_, view)| view,
+    )
 }

@@ -77,7 +77,7 @@ pub fn write_shaded(
 
 /// Where 32-bit positions count from: the origin, unless the model is so far from it that digits
 /// would be lost.
-fn local_origin(bounds: &Aabb) -> DVec3 {
+pub(super) fn local_origin(bounds: &Aabb) -> DVec3 {
     const FAR: f64 = 8.0;
     let centre = bounds.min + (bounds.max - bounds.min) * 0.5;
     if centre.length() > FAR * bounds.diagonal() {

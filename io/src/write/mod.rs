@@ -13,6 +13,7 @@ mod unit;
 pub mod atomic;
 pub mod gltf;
 pub mod obj;
+pub mod page;
 pub mod picture;
 pub mod ply;
 pub mod stl;
