@@ -125,7 +125,7 @@ fn vertices_lie_on_the_surfaces_of_all_facets_around_them() {
     for facet in brep.facets() {
         let polynomial = &solid.primitives[facet.primitive().0 as usize].polynomial;
         for vertex in facet.vertices() {
-            let at = solid.domain.to_unit(vertex.position());
+            let at = solid.domain.to_centered(vertex.position());
             let distance = polynomial.evaluate(at) / polynomial.gradient(at).length();
             assert!(
                 distance.abs() < 1e-14,

@@ -44,7 +44,7 @@ pub(crate) fn spheres(count: usize) -> Solid {
     let extent = alone.extent;
     let size = extent.max - extent.min;
     let middle = (extent.max + extent.min) * 0.5;
-    let shift = largest.to_unit(middle) - 0.5;
+    let shift = 0.5 * largest.to_centered(middle);
     let fit = DomainFit::new(largest.size() / size.max_element(), shift).expect("room");
     Solid::build_fitted(&model(&name(count)), None, fit).expect("a bounded fixture")
 }

@@ -310,7 +310,7 @@ fn hidden_surface(solid: &Solid, own: PrimitiveId, points: &[DVec3]) -> Option<P
     const NEAR: f64 = 1e-9;
     let on = |polynomial: &csg::Polynomial| {
         points.iter().all(|&point| {
-            let at = solid.domain.to_unit(point);
+            let at = solid.domain.to_centered(point);
             polynomial.evaluate(at).abs() <= NEAR * polynomial.gradient(at).length()
         })
     };

@@ -112,7 +112,9 @@ impl Shading {
                 continue;
             };
             // The domain is a cube: directions are the same in its coordinates.
-            let position = solid.domain.to_unit(brep.vertex(corner.vertex).position());
+            let position = solid
+                .domain
+                .to_centered(brep.vertex(corner.vertex).position());
             let gradient = primitive.polynomial.gradient(position);
             let outward = match facet.sense() {
                 Sense::Inside => gradient,
@@ -188,7 +190,7 @@ mod tests {
         };
         let domain = Domain::around(&extent);
         // In the domain's own coordinates: |origin + size u|² − 1.
-        let (o, s) = (domain.origin(), domain.size());
+        let (o, s) = (domain.center(), domain.half_size());
         let mut matrix = [[0.0; 4]; 4];
         for axis in 0..3 {
             matrix[axis][axis] = s * s;

@@ -55,8 +55,8 @@ impl Solid {
         }
         let domain = domain_around(&bounds, fit)?;
         let mut lowered = match constant {
-            Some(_) => Lowered::new(Region::UnitCube),
-            None => Lowered::of(model, &survey, &to_model(&domain), Region::UnitCube)?,
+            Some(_) => Lowered::new(Region::Cube),
+            None => Lowered::of(model, &survey, &to_model(&domain), Region::Cube)?,
         };
         if let Some(clip) = &clip {
             intersect(&mut lowered, clip, &domain)?;
@@ -110,20 +110,20 @@ fn domain_around(bounds: &Aabb, fit: DomainFit) -> Result<Domain, Error> {
     let farthest = bounds.min.abs().max(bounds.max.abs()).max_element();
     let size = domain.size();
     let exponent_in_range = (1e-100..1e100).contains(&size);
-    if exponent_in_range && domain.origin().is_finite() && size > 1e-12 * farthest {
+    if exponent_in_range && domain.center().is_finite() && size > 1e-12 * farthest {
         Ok(domain)
     } else {
         Err(Error::ExtentOutOfRange)
     }
 }
 
-/// From the domain's coordinates to the model's, for row vectors.
+/// From the domain's centred coordinates to the model's, for row vectors.
 fn to_model(domain: &Domain) -> Bounded {
     let mut rows = IDENTITY;
     for (axis, row) in rows.iter_mut().take(3).enumerate() {
-        row[axis] = domain.size();
+        row[axis] = domain.half_size();
     }
-    rows[3][..3].copy_from_slice(&domain.origin().to_array());
+    rows[3][..3].copy_from_slice(&domain.center().to_array());
     Bounded::exact(rows)
 }
 

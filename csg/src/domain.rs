@@ -4,14 +4,17 @@
 use crate::Aabb;
 use glam::DVec3;
 
-/// An axis-parallel cube in model space; its own coordinates run over [0, 1]³.
+/// An axis-parallel cube in model space.
+///
+/// Positions of the subdivision are given in unit coordinates, 0 to 1 from corner to corner;
+/// polynomials in centred ones, −1 to 1, in which powers do not cancel.
 ///
 /// One cube suffices for extents of any proportion: simplices outside the extent are proved empty
 /// after a few bisections, so the bintree itself does what a tiling by smaller cubes would do.
 #[derive(Clone, Copy, PartialEq, Debug)]
 pub struct Domain {
-    origin: DVec3,
-    size: f64,
+    center: DVec3,
+    half: f64,
 }
 
 /// How much larger than a solid's extent its domain is, and where in it the extent lies.
@@ -60,32 +63,50 @@ impl Domain {
         let size = (extent.max - extent.min).max_element() * fit.margin;
         let center = (extent.min + extent.max) * 0.5;
         Self {
-            origin: center - size * (DVec3::splat(0.5) + fit.shift),
-            size,
+            center: center - size * fit.shift,
+            half: 0.5 * size,
         }
     }
 
     /// The corner with the smallest coordinates, in model units.
     #[must_use]
     pub fn origin(&self) -> DVec3 {
-        self.origin
+        self.center - self.half
+    }
+
+    /// The middle, in model units.
+    #[must_use]
+    pub fn center(&self) -> DVec3 {
+        self.center
+    }
+
+    /// Half the length of a side, in model units.
+    #[must_use]
+    pub fn half_size(&self) -> f64 {
+        self.half
     }
 
     /// Length of a side, in model units.
     #[must_use]
     pub fn size(&self) -> f64 {
-        self.size
+        2.0 * self.half
     }
 
-    /// Maps the domain's own coordinates to model space.
+    /// Maps unit coordinates to model space.
     #[must_use]
-    pub fn to_model(&self, unit: DVec3) -> DVec3 {
-        self.origin + unit * self.size
+    pub fn from_unit(&self, unit: DVec3) -> DVec3 {
+        self.from_centered(2.0 * unit - 1.0)
     }
 
-    /// Maps a point of model space to the domain's own coordinates.
+    /// Maps centred coordinates to model space.
     #[must_use]
-    pub fn to_unit(&self, point: DVec3) -> DVec3 {
-        (point - self.origin) / self.size
+    pub fn from_centered(&self, centered: DVec3) -> DVec3 {
+        self.center + centered * self.half
+    }
+
+    /// Maps a point of model space to centred coordinates.
+    #[must_use]
+    pub fn to_centered(&self, point: DVec3) -> DVec3 {
+        (point - self.center) / self.half
     }
 }

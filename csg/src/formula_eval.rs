@@ -57,12 +57,12 @@ impl Solid {
     /// Decided by floating-point evaluation, so not reliable within rounding of the boundary.
     #[must_use]
     pub fn contains(&self, point: DVec3) -> bool {
-        let unit = self.domain.to_unit(point);
-        let in_domain = unit.cmpge(DVec3::ZERO).all() && unit.cmple(DVec3::ONE).all();
+        let at = self.domain.to_centered(point);
+        let in_domain = at.abs().max_element() <= 1.0;
         in_domain
             && self.formula.contains(|id| {
                 let primitive = &self.primitives[id.0 as usize];
-                primitive.polynomial.evaluate(unit) <= 0.0
+                primitive.polynomial.evaluate(at) <= 0.0
             })
     }
 }

@@ -3,7 +3,6 @@
 //! Flush faces, shared faces and A \ A then cancel by Boolean evaluation instead of by luck.
 
 use crate::lower::Half;
-use crate::matrix::Rows;
 use crate::{Error, NearlyEqual, Polynomial, Primitive, PrimitiveId, Sense};
 
 /// Polynomials this close, relative to their largest coefficient over the cube [−1, 1]³, are
@@ -22,14 +21,6 @@ const NEIGHBOURS: usize = 16;
 /// See [`NEIGHBOURS`].
 const MAX_REPORTED: usize = 1000;
 
-/// From the cube [−1, 1]³ to the unit cube.
-const CENTERED: Rows = [
-    [0.5, 0.0, 0.0, 0.0],
-    [0.0, 0.5, 0.0, 0.0],
-    [0.0, 0.0, 0.5, 0.0],
-    [0.5, 0.5, 0.5, 1.0],
-];
-
 /// Interned half-spaces.
 pub(crate) struct Interned {
     /// By first occurrence.
@@ -39,7 +30,7 @@ pub(crate) struct Interned {
     pub(crate) nearly_equal: Vec<NearlyEqual>,
 }
 
-/// A half-space's polynomial in the coordinates of the cube [−1, 1]³, largest coefficient 1.
+/// A half-space's polynomial, largest coefficient 1.
 struct Key {
     half: usize,
     degree: usize,
@@ -58,7 +49,7 @@ struct Class {
     members: Vec<(usize, Sense)>,
 }
 
-/// Interns half-spaces given in the unit cube's coordinates. Cost: O(n log n).
+/// Interns half-spaces given in the coordinates of the cube [−1, 1]³. Cost: O(n log n).
 pub(crate) fn intern(halves: &[Half]) -> Result<Interned, Error> {
     let mut keys = halves
         .iter()
@@ -196,14 +187,13 @@ fn primitive(halves: &[Half], members: &[(usize, Sense)]) -> Result<Primitive, E
 
 impl Key {
     fn of(half: usize, Half { polynomial, error }: &Half) -> Result<Self, Error> {
-        let centered = polynomial.substituted(&CENTERED)?;
-        let largest = centered.max_abs();
-        let centered = centered.scaled(1.0 / largest)?;
-        let coefficients = centered.coefficients().to_vec();
+        let largest = polynomial.max_abs();
+        let scaled = polynomial.clone().scaled(1.0 / largest)?;
+        let coefficients = scaled.coefficients().to_vec();
         let projected = coefficients.iter().zip(directions()).map(|(c, d)| c * d);
         Ok(Self {
             half,
-            degree: centered.degree(),
+            degree: scaled.degree(),
             projection: projected.sum::<f64>().abs(),
             coefficients,
             error: error / largest,

@@ -40,8 +40,8 @@ pub(crate) struct Half {
 /// sign, which polynomials of odd degree notice.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub(crate) enum Region {
-    /// The frame is used for the unit cube only.
-    UnitCube,
+    /// The frame is used for the cube [−1, 1]³ only.
+    Cube,
     /// The frame is used for all of space.
     Everywhere,
 }
@@ -162,10 +162,9 @@ impl Lowered {
     /// Whether w may be positive and negative in the region.
     fn signs_of_w(&self, [x, y, z, one]: [f64; 4]) -> (bool, bool) {
         match self.region {
-            Region::UnitCube => {
-                let highest = one + x.max(0.0) + y.max(0.0) + z.max(0.0);
-                let lowest = one + x.min(0.0) + y.min(0.0) + z.min(0.0);
-                (highest > 0.0, lowest < 0.0)
+            Region::Cube => {
+                let turn = x.abs() + y.abs() + z.abs();
+                (one + turn > 0.0, one - turn < 0.0)
             }
             Region::Everywhere => {
                 let varies = x != 0.0 || y != 0.0 || z != 0.0;

@@ -52,17 +52,16 @@ impl Bounded {
             for j in 0..4 {
                 let factors = [0, 1, 2, 3].map(|k| (self.rows[i][k], other.rows[k][j]));
                 rows[i][j] = factors.iter().map(|(a, b)| a * b).sum();
-                let mut terms = factors.iter().filter(|(a, b)| a * b != 0.0);
-                // One term with a factor of 1 is exact, and so is none; both are common.
-                let exact = match (terms.next(), terms.next()) {
-                    (None, _) => true,
-                    (Some((a, b)), None) => is_unit(*a) || is_unit(*b),
-                    _ => false,
-                };
-                if !exact {
+                let terms = || factors.iter().filter(|(a, b)| a * b != 0.0);
+                let count = terms().count();
+                // Products with a factor of 1 are exact, and common: a shift of a shift rounds
+                // once, relative to what is left of both.
+                error[i][j] += if terms().all(|(a, b)| is_unit(*a) || is_unit(*b)) && count <= 2 {
+                    0.5 * f64::EPSILON * if count == 2 { rows[i][j].abs() } else { 0.0 }
+                } else {
                     let sum: f64 = factors.iter().map(|(a, b)| (a * b).abs()).sum();
-                    error[i][j] += 2.5 * f64::EPSILON * sum;
-                }
+                    2.5 * f64::EPSILON * sum
+                };
             }
         }
         Self { rows, error }

@@ -5,7 +5,7 @@ use crate::{Aabb, Domain, Formula, Polynomial, PrimitiveId};
 /// A polynomial half-space boundary shared by all literals that mean the same surface.
 #[derive(Clone, PartialEq, Debug)]
 pub struct Primitive {
-    /// `p`, in the domain's own coordinates, scaled so that the largest coefficient has absolute
+    /// `p`, in the domain's centred coordinates, scaled so that the largest coefficient has absolute
     /// value 1; negative inside.
     pub polynomial: Polynomial,
     /// Bound on the absolute error of each of its coefficients against the model as written.

@@ -149,13 +149,13 @@ fn plane(p: &Polynomial) -> Surface {
 }
 
 impl Surface {
-    /// The surface given in a domain's own coordinates, in model units: moved and scaled.
+    /// The surface given in a domain's centred coordinates, in model units: moved and scaled.
     fn in_model(self, domain: &Domain) -> Self {
-        let (at, size) = (|p| domain.to_model(p), domain.size());
+        let (at, size) = (|p| domain.from_centered(p), domain.half_size());
         match self {
             Self::Plane { normal, offset } => Self::Plane {
                 normal,
-                offset: offset * size + normal.dot(domain.origin()),
+                offset: offset * size + normal.dot(domain.center()),
             },
             Self::Sphere { center, radius } => Self::Sphere {
                 center: at(center),

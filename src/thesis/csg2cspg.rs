@@ -150,12 +150,15 @@ fn convert(
             primitives: Vec::with_capacity(named.len()),
         })
         .collect();
-    let size = bounds.max - bounds.min;
+    let (center, half) = (
+        0.5 * (bounds.min + bounds.max),
+        0.5 * (bounds.max - bounds.min),
+    );
     let to_box = [
-        [size.x, 0.0, 0.0, 0.0],
-        [0.0, size.y, 0.0, 0.0],
-        [0.0, 0.0, size.z, 0.0],
-        [bounds.min.x, bounds.min.y, bounds.min.z, 1.0],
+        [half.x, 0.0, 0.0, 0.0],
+        [0.0, half.y, 0.0, 0.0],
+        [0.0, 0.0, half.z, 0.0],
+        [center.x, center.y, center.z, 1.0],
     ];
     for (name, half_space) in (0..).zip(&named) {
         let polynomial = half_space.polynomial.substituted(&to_box)?;

@@ -229,10 +229,10 @@ impl Sheet {
         let error = active.error();
         // Only what halving rounded, and sums here, grows with Σ |∂b_v/∂u| ≤ 2N. What the root's
         // coefficients were off by is the restriction of one polynomial, with N = √3 there, and
-        // the model's error bounds that of the derivatives, divided by the degree.
+        // the model's error is twice that of the derivatives, divided by the degree.
         let halving =
             active.rounding - active.root_rounding + 16.0 * UNIT_ROUNDOFF * active.largest;
-        let inherited = 4.0 * active.root_rounding + 2.0 * active.model_error;
+        let inherited = 4.0 * active.root_rounding + 4.0 * active.model_error;
         let slope_error = n as f64 * (2.0 * place.rate * halving + inherited);
         if slope <= slope_error {
             return None;

@@ -122,7 +122,7 @@ pub(crate) fn gather(
     // The topological rule drops surfaces that do not matter to it.
     report.volume_interval = (!plan.topology).then(|| volume.of_domain(&plan.solid.domain));
     let domain: Domain = plan.solid.domain;
-    let (mut fragments, tangles) = join(meshes, |unit| domain.to_model(unit));
+    let (mut fragments, tangles) = join(meshes, |unit| domain.from_unit(unit));
     let primitives = plan.solid.primitives.iter();
     let is_plane: Vec<bool> = primitives.map(|p| p.polynomial.degree() == 1).collect();
     report.crossing_leaves = untangle(&mut fragments, &tangles, &is_plane);
@@ -297,7 +297,7 @@ impl Visitor for Harvester<'_> {
                 .plan
                 .solid
                 .domain
-                .to_model(simplex.midpoint().position());
+                .from_unit(simplex.midpoint().position());
             self.error.get_or_insert(Error::TooManySurfaces {
                 count,
                 x: p.x,

@@ -5,7 +5,8 @@ use crate::certify::BarycentricGradients;
 use csg::Primitive;
 use glam::{DMat3, DVec3};
 
-/// Bounds on the second derivatives of a quadric in any direction, its error included.
+/// Bounds on the second derivatives of a quadric in any direction, in unit coordinates, its error
+/// included.
 #[derive(Clone, Copy, PartialEq, Debug)]
 pub(crate) struct Hessian {
     /// Largest absolute value; exact for balls.
@@ -25,13 +26,14 @@ impl Hessian {
             return None;
         }
         let c = polynomial.coefficients();
+        // Half a unit is one centred one.
         let hessian = DMat3::from_cols(
-            DVec3::new(2.0 * c[0], c[1], c[2]),
-            DVec3::new(c[1], 2.0 * c[4], c[5]),
-            DVec3::new(c[2], c[5], 2.0 * c[7]),
+            DVec3::new(8.0 * c[0], 4.0 * c[1], 4.0 * c[2]),
+            DVec3::new(4.0 * c[1], 8.0 * c[4], 4.0 * c[5]),
+            DVec3::new(4.0 * c[2], 4.0 * c[5], 8.0 * c[7]),
         );
-        // Six entries are off by up to twice the coefficients' error.
-        let error = 12.0 * primitive.coefficient_error;
+        // Six entries are off by up to eight times the coefficients' error.
+        let error = 48.0 * primitive.coefficient_error;
         let norm = norm(&hessian);
         // All eigenvalues are as close to their mean as the rest's norm tells.
         let mean = (hessian.x_axis.x + hessian.y_axis.y + hessian.z_axis.z) / 3.0;

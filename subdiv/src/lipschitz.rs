@@ -77,7 +77,7 @@ fn at_barycentre(exponents: [usize; 4]) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::blossom::RootCoefficients;
+    use crate::blossom::{RootCoefficients, centered};
     use crate::halving::halve;
     use crate::simplex::Simplex;
     use csg::{Polynomial, Primitive};
@@ -90,7 +90,7 @@ mod tests {
         let normal = DVec3::new(0.48, -0.6, 0.64);
         let mut decided = [0; 2];
         for offset in [-0.4, -0.1, 0.05, 0.2, 0.45, 0.7] {
-            let polynomial = Polynomial::affine(normal, offset).unwrap();
+            let polynomial = centered(&Polynomial::affine(normal, offset).unwrap());
             let primitive = Primitive {
                 polynomial,
                 coefficient_error: 0.0,

@@ -183,7 +183,7 @@ mod tests {
             let at: DVec3 = (0..4).map(|v| simplex.vertices[v].position() * (b[v] / sum)).sum();
             for direction in directions {
                 let by = DVec3::from(direction).normalize_or_zero() * radius;
-                let value = primitive.polynomial.evaluate(at + by);
+                let value = primitive.polynomial.evaluate(2.0 * (at + by) - 1.0);
                 prop_assert_eq!(value > 0.0, class.value() == Ternary::Out);
             }
         }

@@ -171,7 +171,7 @@ impl<'a> Prover<'a> {
 impl Spot {
     /// A leaf, with why nothing is proved there.
     pub(crate) fn new(domain: &Domain, simplex: &Simplex, frame: &Frame, reason: Reason) -> Self {
-        let corners = simplex.vertices.map(|v| domain.to_model(v.position()));
+        let corners = simplex.vertices.map(|v| domain.from_unit(v.position()));
         let crossing = frame.active.iter().filter(|a| a.value == Ternary::Unknown);
         let primitives = crossing.map(|a| PrimitiveId(a.primitive));
         Self {

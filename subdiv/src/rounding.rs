@@ -7,7 +7,7 @@
 //!   halving by what the averages round off there;
 //! * *model*: of that polynomial itself against the user's model, whose transformations, shift
 //!   to the domain and interning rounded: [`Primitive::coefficient_error`]. Monomials are
-//!   Bernstein forms with coefficients in [0, 1] in the unit cube, and an affine map of the
+//!   Bernstein forms with coefficients in [−1, 1] in the cube, and an affine map of the
 //!   arguments averages coefficients, so it is the same in all simplices.
 //!
 //! A sign that exceeds the sum of both is the sign that the user's polynomial has. Decisions
@@ -26,13 +26,13 @@ const OUTWARD: f64 = 1.0 + 8.0 * f64::EPSILON;
 
 /// Rounding of the conversion from power form (`crate::blossom`).
 ///
-/// `magnitude`: sum of the absolute power coefficients. In each of three passes a term is
-/// multiplied by a ratio of at most n quotients, two roundings each, and takes part in at most
-/// n+1 additions; all ratios together are at most 1.
+/// `magnitude`: sum of the absolute power coefficients. In each of six passes a term is
+/// multiplied by a weight, itself rounded five times, and takes part in at most n additions; all
+/// weights of a pass together are at most 1.
 #[must_use]
 pub(crate) fn of_conversion(degree: usize, magnitude: f64) -> f64 {
-    let roundings = 3 * (3 * degree + 2);
-    // (1+u)^k − 1 ≤ k·u·(1 + k·u) for the k that occur, some 600 at degree 64.
+    let roundings = 6 * (degree + 6);
+    // (1+u)^k − 1 ≤ k·u·(1 + k·u) for the k that occur, some 420 at degree 64.
     let relative = roundings as f64 * UNIT_ROUNDOFF;
     relative * (1.0 + relative) * magnitude * OUTWARD + f64::MIN_POSITIVE
 }
@@ -48,7 +48,7 @@ pub(crate) fn of_halving(degree: usize, parent: f64, largest: f64) -> f64 {
 }
 
 /// Error of a primitive's Bernstein coefficients against the user's model, in any simplex of the
-/// unit cube.
+/// domain.
 #[must_use]
 pub(crate) fn of_model(primitive: &Primitive) -> f64 {
     primitive.coefficient_error * primitive.polynomial.coefficients().len() as f64 * OUTWARD

@@ -155,8 +155,8 @@ pub fn subdivide(
     Ok(outcome)
 }
 
-/// Bernstein coefficients of a polynomial on the six simplices of the unit cube, in the order of
-/// [`sector_corners`].
+/// Bernstein coefficients of a polynomial, given in the centred coordinates of a cube, −1 to 1, on
+/// its six simplices in the order of [`sector_corners`].
 #[must_use]
 pub fn bernstein_on_cube(polynomial: &Polynomial) -> [Vec<f64>; 6] {
     RootCoefficients::new(&Primitive {

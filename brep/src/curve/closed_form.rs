@@ -205,15 +205,15 @@ impl Search<'_> {
             normals.extend((b - a).cross(c - a).try_normalize());
         }
         let domain = &self.solid.domain;
-        let near = domain.to_unit(point);
+        let near = domain.to_centered(point);
         let mut ellipses = Vec::new();
         for normal in normals {
             for primitive in self.pair {
                 if let Some((center, across)) =
                     plane_conic::ellipse(&primitive.polynomial, normal, near)
                 {
-                    let across = across.map(|axis| axis * domain.size());
-                    let center = domain.to_model(center);
+                    let across = across.map(|axis| axis * domain.half_size());
+                    let center = domain.from_centered(center);
                     ellipses.push(Curve::Ellipse { center, across });
                 }
             }
@@ -324,7 +324,7 @@ impl Search<'_> {
         let noise = terms * (primitive.coefficient_error + 4.0 * f64::EPSILON);
         (0..=pieces).all(|k| {
             let t = range[0] + (range[1] - range[0]) * (k as f64 / pieces as f64);
-            let at = self.solid.domain.to_unit(curve.point(t));
+            let at = self.solid.domain.to_centered(curve.point(t));
             p.evaluate(at).abs() <= noise + ON_SURFACE * p.gradient(at).length()
         })
     }

@@ -38,8 +38,8 @@ impl<'a> Meet<'a> {
     /// The solution nearest to a point, at most `reach` away from it, in model units.
     pub(super) fn solve(self, near: DVec3, reach: f64) -> Option<DVec3> {
         let domain = &self.solid.domain;
-        let start = domain.to_unit(near);
-        let reach = reach / domain.size();
+        let start = domain.to_centered(near);
+        let reach = reach / domain.half_size();
         let plain = self.iterate(start, start, reach, &[]);
         let from = plain.unwrap_or(start);
         let pairs = self.pairs(from, TOUCHING);
@@ -50,7 +50,7 @@ impl<'a> Meet<'a> {
                 .filter(|&at| self.residual(at) <= SOLVED && slant(&pairs, at) <= TOUCHED)
         };
         let plain = plain.filter(|&at| self.residual(at) <= SOLVED);
-        Some(domain.to_model(touched.or(plain)?))
+        Some(domain.from_centered(touched.or(plain)?))
     }
 
     /// Largest distance from the surfaces, to first order, relative to the domain.
@@ -68,17 +68,17 @@ impl<'a> Meet<'a> {
     /// The nearest point where all surfaces touch each other.
     pub(super) fn touching_point(self, near: DVec3, reach: f64) -> Option<DVec3> {
         let domain = &self.solid.domain;
-        let start = domain.to_unit(near);
+        let start = domain.to_centered(near);
         let pairs = self.pairs(start, f64::INFINITY);
-        let at = self.iterate(start, start, reach / domain.size(), &pairs)?;
+        let at = self.iterate(start, start, reach / domain.half_size(), &pairs)?;
         let holds =
             !pairs.is_empty() && self.residual(at) <= SOLVED && slant(&pairs, at) <= TOUCHED;
-        holds.then(|| domain.to_model(at))
+        holds.then(|| domain.from_centered(at))
     }
 
     /// Largest sine between normals; 1 where there is nothing to compare.
     pub(super) fn slant_at(self, at: DVec3) -> f64 {
-        let at = self.solid.domain.to_unit(at);
+        let at = self.solid.domain.to_centered(at);
         let pairs = self.pairs(at, f64::INFINITY);
         if pairs.is_empty() {
             1.0
@@ -156,7 +156,7 @@ impl<'a> Meet<'a> {
 
     /// Direction of the curve in which the first two surfaces cross; none where they touch.
     pub(super) fn direction(self, at: DVec3) -> Option<DVec3> {
-        let at = self.solid.domain.to_unit(at);
+        let at = self.solid.domain.to_centered(at);
         let mut normals = self
             .polynomials()
             .map(|p| p.gradient(at).normalize_or_zero());

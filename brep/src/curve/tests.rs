@@ -76,7 +76,7 @@ fn check(found: &Found) {
             for &point in &line {
                 for id in &curve.primitives {
                     let p = &solid.primitives[id.0 as usize].polynomial;
-                    let at = solid.domain.to_unit(point);
+                    let at = solid.domain.to_centered(point);
                     let distance = p.evaluate(at) / p.gradient(at).length();
                     assert!(distance.abs() < 1e-10, "{distance} {curve:?}");
                 }

@@ -149,14 +149,14 @@ impl<'a> Sheet<'a> {
                 (length - tube, from_ring / length)
             }
             Self::Implicit { polynomial, domain } => {
-                let unit = domain.to_unit(p);
-                let gradient = polynomial.gradient(unit);
+                let at = domain.to_centered(p);
+                let gradient = polynomial.gradient(at);
                 let slope = gradient.length();
                 if slope == 0.0 {
                     return (f64::INFINITY, DVec3::ZERO);
                 }
-                let value = polynomial.evaluate(unit);
-                (value / slope * domain.size(), gradient / slope)
+                let value = polynomial.evaluate(at);
+                (value / slope * domain.half_size(), gradient / slope)
             }
         }
     }

@@ -111,14 +111,14 @@ proptest! {
         let Some(primitive) = solid.primitives.iter().find(|p| p.polynomial.degree() == 3) else {
             return Ok(());
         };
-        // From the unit cube to the model, to the outer instance, to the shape.
-        let origin = solid.domain.origin();
-        let size = solid.domain.size();
+        // From centred coordinates to the model, to the outer instance, to the shape.
+        let center = solid.domain.center();
+        let half = solid.domain.half_size();
         let to_model = [
-            [size, 0.0, 0.0, 0.0],
-            [0.0, size, 0.0, 0.0],
-            [0.0, 0.0, size, 0.0],
-            [origin.x, origin.y, origin.z, 1.0],
+            [half, 0.0, 0.0, 0.0],
+            [0.0, half, 0.0, 0.0],
+            [0.0, 0.0, half, 0.0],
+            [center.x, center.y, center.z, 1.0],
         ];
         let to_model = to_model.iter().map(|row| row.map(exact).to_vec()).collect();
         let to_shape = product(&product(&to_model, &inverse(&outer)), &inverse(&inner));

@@ -2,6 +2,7 @@
 //! 2-manifold, whatever degeneracies the formula has.
 
 use super::*;
+use crate::blossom::centered;
 use csg::{
     Aabb, Domain, Formula, FormulaNode, Literal, MaterialId, Polynomial, Primitive, PrimitiveId,
     Sense,
@@ -10,7 +11,7 @@ use glam::DVec3;
 use proptest::prelude::*;
 use rustc_hash::FxHashMap;
 
-/// A solid from polynomials given in the domain's own coordinates.
+/// A solid from polynomials given in unit coordinates.
 fn solid(polynomials: Vec<Polynomial>, nodes: Vec<FormulaNode>) -> Solid {
     let extent = Aabb {
         min: DVec3::ZERO,
@@ -22,7 +23,7 @@ fn solid(polynomials: Vec<Polynomial>, nodes: Vec<FormulaNode>) -> Solid {
         primitives: polynomials
             .into_iter()
             .map(|polynomial| Primitive {
-                polynomial,
+                polynomial: centered(&polynomial),
                 coefficient_error: 0.0,
             })
             .collect(),
@@ -428,7 +429,7 @@ fn singular_points_are_listed() {
     let outcome = run_at(&s, Rule::Tolerance(tolerance), 2);
     assert_eq!(manifold_defect(&outcome.fragments), None);
     assert!(outcome.report.uncertified_leaves > 0);
-    let apex = s.domain.to_model(c);
+    let apex = s.domain.from_unit(c);
     for spot in &outcome.report.uncertified {
         assert!(spot.position.distance(apex) < 10.0 * tolerance, "{spot:?}");
         assert!(spot.size <= tolerance);

@@ -86,7 +86,7 @@ pub(super) fn inside(solid: &Solid, vertex: [u32; 3], halvings: u8) -> impl Iter
     let point = Point::new(vertex.map(|c| c << shift)).position();
     solid.primitives.chunks(64).map(move |chunk| {
         chunk.iter().enumerate().fold(0, |word, (at, primitive)| {
-            word | u64::from(primitive.polynomial.evaluate(point) <= 0.0) << at
+            word | u64::from(primitive.polynomial.evaluate(2.0 * point - 1.0) <= 0.0) << at
         })
     })
 }

@@ -172,7 +172,7 @@ fn control_net_errs_by_a_fraction_of_the_interpolant() {
         let mut power = vec![0.0; csg::Polynomial::coefficient_count(n)];
         power[csg::Polynomial::index(n, 2, 0, 0)] = 1.0;
         let primitive = csg::Primitive {
-            polynomial: csg::Polynomial::new(n, power).unwrap(),
+            polynomial: crate::blossom::centered(&csg::Polynomial::new(n, power).unwrap()),
             coefficient_error: 0.0,
         };
         let root = &bernstein_coefficients(&primitive)[0];

@@ -26,8 +26,42 @@ fn falling(m: usize, n: usize, r: usize) -> BigRational {
     })
 }
 
-/// The sum that `crate::blossom` quotes, term by term.
-fn converted(n: usize, power: &[f64], axes: [usize; 3]) -> Exact {
+/// A polynomial in centred coordinates 2x − 1, 2y − 1, 2z − 1 as one in x, y, z.
+fn in_unit(n: usize, power: &[f64]) -> Exact {
+    // Coefficients of (2t − 1)^e, lowest first.
+    let expanded = |e: usize| {
+        (0..e).fold(vec![ratio(1, 1)], |p, _| {
+            let zero = ratio(0, 1);
+            (0..=p.len())
+                .map(|at| {
+                    let below = at.checked_sub(1).map_or(&zero, |at| &p[at]);
+                    below * ratio(2, 1) - p.get(at).unwrap_or(&zero)
+                })
+                .collect()
+        })
+    };
+    let expanded: Vec<Exact> = (0..=n).map(expanded).collect();
+    let mut sums = vec![ratio(0, 1); count(n)];
+    for i in 0..=n {
+        for j in 0..=n - i {
+            for k in 0..=n - i - j {
+                let c = exact(power[Polynomial::index(n, i, j, k)]);
+                for (a, x) in expanded[i].iter().enumerate() {
+                    for (b, y) in expanded[j].iter().enumerate() {
+                        for (d, z) in expanded[k].iter().enumerate() {
+                            sums[Polynomial::index(n, a, b, d)] += &c * x * y * z;
+                        }
+                    }
+                }
+            }
+        }
+    }
+    sums
+}
+
+/// On the unit cube's root simplex along `axes`: the blossom of a^α b^β c^γ counts the ways to give
+/// γ of the l last arguments to c, β of the remaining k+l−γ to b and α of the others to a.
+fn converted(n: usize, power: &Exact, axes: [usize; 3]) -> Exact {
     let mut all = vec![ratio(0, 1); count(n)];
     for_each_index(n, |at, [_, j, k, l]| {
         for gamma in 0..=l {
@@ -37,11 +71,11 @@ fn converted(n: usize, power: &[f64], axes: [usize; 3]) -> Exact {
                     for (axis, exponent) in axes.into_iter().zip([alpha, beta, gamma]) {
                         e[axis] = exponent;
                     }
-                    let c = power[Polynomial::index(n, e[0], e[1], e[2])];
+                    let c = &power[Polynomial::index(n, e[0], e[1], e[2])];
                     let ways = falling(l, n, gamma)
                         * falling(k + l - gamma, n - gamma, beta)
                         * falling(j + k + l - gamma - beta, n - gamma - beta, alpha);
-                    all[at] += exact(c) * ways;
+                    all[at] += c * ways;
                 }
             }
         }
@@ -90,7 +124,7 @@ fn descend(degree: usize, power: &[f64], root: usize, turns: &[bool]) {
         coefficient_error: 0.0,
     });
     let mut floats = roots.roots[root].clone();
-    let mut exacts = converted(degree, power, ROOT_AXES[root]);
+    let mut exacts = converted(degree, &in_unit(degree, power), ROOT_AXES[root]);
     let mut bound = roots.rounding;
     for (level, &far) in turns.iter().enumerate() {
         let gap = distance(&floats, &exacts);

@@ -1,4 +1,5 @@
 use super::*;
+use crate::blossom::centered;
 use csg::{Literal, Sense};
 
 fn sphere(radius: f64) -> (Vec<FormulaNode>, Vec<SectorRoot>) {
@@ -7,7 +8,7 @@ fn sphere(radius: f64) -> (Vec<FormulaNode>, Vec<SectorRoot>) {
     // |p − (½, ½, ½)|² − r².
     let constant = [([0, 0, 0], 0.75 - radius * radius)];
     let terms: Vec<_> = square.into_iter().chain(line).chain(constant).collect();
-    let polynomial = Polynomial::from_terms(2, &terms).unwrap();
+    let polynomial = centered(&Polynomial::from_terms(2, &terms).unwrap());
     let literal = Literal {
         primitive: PrimitiveId(0),
         sense: Sense::Inside,

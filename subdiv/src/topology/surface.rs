@@ -91,7 +91,7 @@ impl<'a> Surface<'a> {
     ) -> Self {
         let halving = active.rounding - active.root_rounding;
         let slope_noise = frame.magnification * (8.0 * UNIT_ROUNDOFF * active.largest);
-        let inherited = 2.0 * active.root_rounding + active.model_error;
+        let inherited = 2.0 * (active.root_rounding + active.model_error);
         Self {
             noise: active.error() + 16.0 * UNIT_ROUNDOFF * active.largest,
             slope_noise,

@@ -410,7 +410,7 @@ proptest! {
             let surface = Surface::new(&table, &coefficients, &active, &frame, None);
             if let Some(cone) = surface.find_cone(&frame) {
                 for corner in simplex.vertices {
-                    let gradient = true_gradient(&shifted, &vector(corner.position()));
+                    let gradient = true_gradient(&shifted, &vector(2.0 * corner.position() - 1.0));
                     prop_assert!(within(&gradient, cone.axis, cone.tangent), "level {}", simplex.level);
                 }
             }
