@@ -252,7 +252,7 @@ pub fn material_color(material: i32) -> Option<[f32; 4]> {
     Some([channel(0.0), channel(4.0), channel(2.0), 1.0])
 }
 
-/// Any solid as a tree of POLINOMIAL leaves in the domain's coordinates, complements negated as in
+/// Any solid as a tree of POLINOMIAL leaves in the domain's centred coordinates, complements negated as in
 /// thesis A.2.2. The format's `float` numbers keep seven digits.
 #[must_use]
 #[expect(
@@ -260,12 +260,12 @@ pub fn material_color(material: i32) -> Option<[f32; 4]> {
     reason = "the format has 32-bit numbers; coefficients are at most 1, and a matrix out of range is refused by readers"
 )]
 pub fn from_solid(solid: &Solid) -> Tree<Instance> {
-    let size = solid.domain.size() as f32;
-    let [x, y, z] = solid.domain.origin().to_array().map(|c| c as f32);
+    let half = solid.domain.half_size() as f32;
+    let [x, y, z] = solid.domain.center().to_array().map(|c| c as f32);
     let matrix = [
-        [size, 0.0, 0.0, 0.0],
-        [0.0, size, 0.0, 0.0],
-        [0.0, 0.0, size, 0.0],
+        [half, 0.0, 0.0, 0.0],
+        [0.0, half, 0.0, 0.0],
+        [0.0, 0.0, half, 0.0],
         [x, y, z, 1.0],
     ];
     let leaf = |material, degree, coefficients| Instance {
