@@ -268,4 +268,45 @@ mod tests {
             }
         }
     }
+
+    /// x^n + y^n + z^n − 1 keeps its digits up to the highest degree, in the root simplices and in
+    /// small ones.
+    #[test]
+    fn high_degrees_keep_their_digits() {
+        for n in [16, 32, 64] {
+            let terms = [
+                ([n, 0, 0], 1.0),
+                ([0, n, 0], 1.0),
+                ([0, 0, n], 1.0),
+                ([0; 3], -1.0),
+            ];
+            let primitive = Primitive {
+                polynomial: csg::Polynomial::from_terms(n, &terms).unwrap(),
+                coefficient_error: 0.0,
+            };
+            let roots = RootCoefficients::new(&primitive);
+            assert!(roots.rounding < 1e-12);
+            let mut simplex = Simplex::roots()[3];
+            let mut c = roots.roots[3].clone();
+            let mut bound = roots.rounding;
+            for level in 0..12 {
+                for b in [[0.25; 4], [0.7, 0.1, 0.1, 0.1], [0.05, 0.1, 0.15, 0.7]] {
+                    let at: DVec3 = (0..4).map(|v| simplex.vertices[v].position() * b[v]).sum();
+                    let expected = primitive.polynomial.evaluate(2.0 * at - 1.0);
+                    let found = evaluate(n, &c, b);
+                    assert!(
+                        (found - expected).abs() < 4.0 * bound,
+                        "{n} {level} {found} {expected}"
+                    );
+                }
+                let largest = c.iter().fold(0.0, |m: f64, x| x.abs().max(m));
+                bound = crate::rounding::of_halving(n, bound, largest);
+                let (mut near, mut far) = (vec![0.0; c.len()], vec![0.0; c.len()]);
+                crate::halving::halve(n, simplex.kind(), &c, &mut near, &mut far);
+                let side = level % 2;
+                simplex = simplex.children()[side];
+                c = if side == 0 { near } else { far };
+            }
+        }
+    }
 }
