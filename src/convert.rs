@@ -30,6 +30,13 @@ pub(crate) fn run(conversion: &Conversion, talk: Talk) -> Result<(), Failure> {
     talk.explain(|| details(&report));
     let names: Vec<String> = conversion.outputs.iter().map(|o| o.target.name()).collect();
     talk.say(&summary(&report, &names));
+    if conversion.strict && report.uncertified_count == 0 && report.one_way_cells > 0 {
+        return Err(Failure::NotCertified(format!(
+            "{} cells are certified one way only: the mesh is near the true boundary there, the \
+             reverse is not proved (--strict)",
+            grouped(report.one_way_cells)
+        )));
+    }
     if conversion.strict && report.uncertified_count > 0 {
         let what = if report.settings.topology_only {
             "leave the topology open"

@@ -69,6 +69,7 @@ pub(crate) fn read(job: &Job, bytes: &[u8]) -> Result<(Fragments, Solid), Failur
             .collect(),
         clipped: false,
         nearly_equal: Vec::new(),
+        imprecise: Vec::new(),
     };
     Ok((fragments, solid))
 }

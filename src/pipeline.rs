@@ -7,6 +7,7 @@ use crate::loose;
 use crate::progress::{self, Progress};
 use crate::report::Report;
 use crate::run::Job;
+use crate::summary::{counted, significant};
 use crate::talk::Talk;
 use brep::simplify::remove_degenerate;
 use brep::{Brep, Groups, Properties, Quality, Retriangulated, Shells, Valid};
@@ -57,8 +58,16 @@ pub(crate) fn run(
     let solid = solid.map_err(|error| Failure::from(error).of_input(&job.input.name()))?;
     drop(loaded);
     report.add_solid(&solid);
+    for warning in doubts(report) {
+        talk.warn(&warning);
+        report.warnings.push(warning);
+    }
 
     let brep = mesh(&solid, job, talk, progress, report)?;
+    if let Some(warning) = too_coarse(report) {
+        talk.warn(&warning);
+        report.warnings.push(warning);
+    }
     let is_mesh = false;
     Ok(measured(
         Boundary {
@@ -172,6 +181,51 @@ fn subdivide(
     let outcome = outcome.map_err(|error| Failure::from(error).of_input(&job.input.name()))?;
     report.add_subdivision(&outcome.report);
     Ok(outcome.fragments)
+}
+
+/// Whether cells that prove nothing are larger than was asked for: a part may hide in them.
+fn too_coarse(report: &Report) -> Option<String> {
+    let (size, asked) = (report.largest_uncertified()?, report.settings.tolerance?);
+    (size > asked * (1.0 + 1e-9)).then(|| {
+        format!(
+            "parts smaller than {} may be missing in {} that are not certified: cells cannot be \
+             as small as the tolerance beside a model of this size",
+            significant(size, 2),
+            counted(report.uncertified_count, "cell")
+        )
+    })
+}
+
+/// What about the surfaces may not be meant.
+fn doubts(report: &Report) -> Vec<String> {
+    const NAMED: usize = 5;
+    let mut doubts = Vec::new();
+    let pairs = &report.nearly_equal_primitives;
+    if !pairs.is_empty() {
+        let named = pairs.iter().take(NAMED).map(|pair| {
+            let [a, b] = pair.primitives;
+            format!("{a} and {b} (by {})", significant(pair.difference, 2))
+        });
+        let named: Vec<String> = named.collect();
+        let more = match pairs.len().saturating_sub(NAMED) {
+            0 => String::new(),
+            more => format!(" and {more} more pairs"),
+        };
+        doubts.push(format!(
+            "surfaces are nearly but not quite equal: {}{more}; gaps and walls that thin are kept \
+             (`csg2brep info` describes surfaces)",
+            named.join(", ")
+        ));
+    }
+    for of in &report.imprecise_primitives {
+        doubts.push(format!(
+            "surface {} has lost digits: its values are uncertain by {} of their usual size \
+             (write it about the part's middle, as products, or with a lower degree)",
+            of.primitive,
+            significant(of.uncertainty, 2)
+        ));
+    }
+    doubts
 }
 
 /// A subdivision that does not close is this program's fault, never the model's.

@@ -85,13 +85,7 @@ struct Measured {
 /// How far the triangles are from the model.
 fn origin(report: &Report) -> String {
     let mut facts = Vec::new();
-    facts.extend(report.proved_distance.map(|distance| {
-        if distance == 0.0 {
-            "exact".to_owned()
-        } else {
-            format!("deviation <= {}", rounded_up(distance))
-        }
-    }));
+    facts.extend(report.deviation());
     let measured = report.largest_deviation.map(rounded_up);
     facts.extend(measured.map(|distance| format!("deviation {distance} (measured)")));
     if report.uncertified_count > 0 {

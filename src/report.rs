@@ -3,6 +3,7 @@
 //! Lengths are in model units, times in seconds. Names are stable within a `schema_version`;
 //! what could not be measured or proved is null.
 
+use crate::summary::rounded_up;
 use brep::{Brep, Groups, Properties, Quality, Retriangulated, Shells, Tessellated};
 use schemars::JsonSchema;
 use serde::Serialize;
@@ -59,6 +60,8 @@ pub(crate) struct Report {
     pub(crate) clipped: bool,
     /// Surfaces that differ by so little that they were probably meant to be one.
     pub(crate) nearly_equal_primitives: Vec<NearlyEqual>,
+    /// Surfaces whose coefficients have lost digits to cancellation.
+    pub(crate) imprecise_primitives: Vec<Imprecise>,
     /// Vertices doubled where the boundary touches itself.
     pub(crate) split_vertices: u64,
     /// Cells in which facets of different surfaces cross by rounding of their positions; elsewhere
@@ -179,6 +182,15 @@ pub(crate) struct NearlyEqual {
     pub(crate) difference: f64,
 }
 
+/// A surface whose coefficients have lost digits.
+#[derive(Clone, Copy, Debug, Serialize, JsonSchema)]
+pub(crate) struct Imprecise {
+    /// As `csg2brep info` numbers it.
+    pub(crate) primitive: u32,
+    /// Bound on the error of the polynomial's values, relative to their usual size.
+    pub(crate) uncertainty: f64,
+}
+
 /// Shapes of the facets.
 #[derive(Clone, Copy, Debug, Serialize, JsonSchema)]
 pub(crate) struct QualityReport {
@@ -226,12 +238,33 @@ impl Report {
             uncertified_count: 0,
             clipped: false,
             nearly_equal_primitives: Vec::new(),
+            imprecise_primitives: Vec::new(),
             split_vertices: 0,
             crossing_cells: 0,
             quality: None,
             warnings: Vec::new(),
             error: None,
         }
+    }
+
+    /// Size of the largest cell in which nothing is proved.
+    pub(crate) fn largest_uncertified(&self) -> Option<f64> {
+        let sizes = self.uncertified.iter().map(|place| place.size);
+        sizes.max_by(f64::total_cmp)
+    }
+
+    /// The proved deviation in words: `exact`, where nothing but the rounding of numbers is left
+    /// and nothing is unproved.
+    pub(crate) fn deviation(&self) -> Option<String> {
+        let distance = self.proved_distance?;
+        let rounding = 1e-9 * self.settings.tolerance.unwrap_or(0.0);
+        let is_whole = self.uncertified_count == 0 && self.one_way_cells == 0;
+        let bound = match (distance <= rounding, is_whole) {
+            (true, true) => return Some("exact".to_owned()),
+            (true, false) => return None,
+            (false, _) => rounded_up(distance),
+        };
+        Some(format!("deviation <= {bound}"))
     }
 
     /// Runs a stage and notes its duration.
@@ -294,6 +327,11 @@ impl Report {
             difference: pair.difference,
         });
         self.nearly_equal_primitives = pairs.collect();
+        let imprecise = solid.imprecise.iter().map(|of| Imprecise {
+            primitive: of.primitive.0,
+            uncertainty: of.uncertainty,
+        });
+        self.imprecise_primitives = imprecise.collect();
     }
 
     /// What the boundary is made of, and its measures.

@@ -38,15 +38,7 @@ fn facts(report: &Report) -> Vec<String> {
         facts.push(format!("volume {}", significant(volume, 6)));
     }
     facts.push("watertight".to_owned());
-    if let Some(distance) = report.proved_distance {
-        // Planes alone: what is left is the rounding of numbers.
-        let rounding = 1e-9 * report.settings.tolerance.unwrap_or(0.0);
-        facts.push(if distance <= rounding {
-            "exact".to_owned()
-        } else {
-            format!("deviation <= {}", rounded_up(distance))
-        });
-    }
+    facts.extend(report.deviation());
     if let Some(distance) = report.largest_deviation {
         facts.push(format!("deviation {} (measured)", rounded_up(distance)));
     }

@@ -174,9 +174,9 @@ fn a_mean_fit_keeps_volumes_planes_and_the_tolerance_with_fewer_triangles() {
                 let corners = facet.vertices().map(brep::VertexView::position);
                 let center = (corners[0] + corners[1] + corners[2]) / 3.0;
                 for at in corners.into_iter().chain([center]) {
-                    let at = solid.domain.to_unit(at);
+                    let at = solid.domain.to_centered(at);
                     let slope = polynomial.gradient(at).length();
-                    let distance = polynomial.evaluate(at) / slope * solid.domain.size();
+                    let distance = polynomial.evaluate(at) / slope * solid.domain.half_size();
                     let most = match polynomial.degree() {
                         1 => 1e-12,
                         // To the first order.

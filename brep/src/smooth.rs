@@ -210,6 +210,7 @@ mod tests {
             materials: Vec::new(),
             clipped: false,
             nearly_equal: Vec::new(),
+            imprecise: Vec::new(),
         };
         let brep = stitch(&sphere(1))
             .expect("closed")

@@ -31,6 +31,10 @@ const SEARCH_WORK: u64 = 20_000_000;
 /// The same for the six directions of the final box, on which most depends.
 const AXIS_WORK: u64 = 60_000_000;
 
+/// Halvings that each search may make at least, whatever the degree: as many as find a ball's box
+/// to some percent. At degree 64 one of them costs nine million multiplications.
+const LEAST_HALVINGS: u64 = 28;
+
 /// Solids that reach farther than this many frame sizes count as unbounded.
 const FARTHEST: f64 = 1e6;
 
@@ -227,6 +231,7 @@ impl BoundedSet {
     fn extent(&self, precision: f64, allowed: u64) -> Aabb {
         let mut extent = Aabb::EMPTY;
         if let Some(root) = &self.root {
+            let allowed = allowed.max(LEAST_HALVINGS * root.halving_work());
             let search = |d: DVec3| farthest(root, &self.errors, d, precision, allowed);
             for (axis, direction) in DVec3::AXES.into_iter().enumerate() {
                 extent.max[axis] = search(direction);

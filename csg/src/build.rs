@@ -4,6 +4,7 @@ use crate::extent::extent;
 use crate::intern::{Interned, intern};
 use crate::lower::{Half, Lowered, Region, Token};
 use crate::matrix::{Bounded, IDENTITY};
+use crate::precision::imprecise;
 use crate::simplify::{Simplified, simplify};
 use crate::survey::Survey;
 use crate::{
@@ -21,8 +22,8 @@ impl Solid {
     /// # Errors
     /// [`Error::BadClipBox`]; [`Error::MisplacedNode`], [`Error::UnknownMaterial`] and
     /// [`Error::TooManyLiterals`] for unsound or too large models; [`Error::Unbounded`] when no
-    /// box is given and none is found; [`Error::NonFinite`] and [`Error::ExtentOutOfRange`] when
-    /// numbers are beyond floating point.
+    /// box is given and none is found; [`Error::NoDigitsLeft`] where coefficients cancel;
+    /// [`Error::NonFinite`] and [`Error::ExtentOutOfRange`] when numbers are beyond floating point.
     pub fn build(model: &Model, clip: Option<Aabb>) -> Result<Self, Error> {
         Self::build_fitted(model, clip, DomainFit::default())
     }
@@ -61,7 +62,17 @@ impl Solid {
         if let Some(clip) = &clip {
             intersect(&mut lowered, clip, &domain)?;
         }
-        let interned = intern(&lowered.halves)?;
+        let mut interned = intern(&lowered.halves)?;
+        if clip.is_none() && !imprecise(&interned.primitives)?.is_empty() {
+            // Outside of its extent noise could make the solid reach the domain's walls.
+            let room = 0.01 * (bounds.max - bounds.min).max_element();
+            let around = Aabb {
+                min: bounds.min - room,
+                max: bounds.max + room,
+            };
+            intersect(&mut lowered, &around, &domain)?;
+            interned = intern(&lowered.halves)?;
+        }
         let nodes = match simplify(&lowered.tokens, &interned.of_half) {
             Simplified::Nodes(nodes) => nodes,
             Simplified::Constant { all: false } => return Ok(Self::empty(model, clip.is_some())),
@@ -72,6 +83,7 @@ impl Solid {
             return Ok(Self::empty(model, clip.is_some()));
         };
         Ok(Self {
+            imprecise: imprecise(&primitives)?,
             domain,
             extent: bounds,
             primitives,
@@ -96,6 +108,7 @@ impl Solid {
             materials: model.materials().to_vec(),
             clipped,
             nearly_equal: Vec::new(),
+            imprecise: Vec::new(),
         }
     }
 }

@@ -126,6 +126,16 @@ pub enum Error {
     /// The solid is unbounded, or could not be proved bounded, and no clip box was given.
     #[error("the solid could not be proved bounded (clip it with --box)")]
     Unbounded,
+    /// A polynomial's coefficients are so much larger than its values that nothing is left of them.
+    #[error(
+        "a polynomial of degree {degree} has lost all digits: its coefficients are rounded by {uncertainty:.0e} of its values (write it about the part's middle, as products, or with a lower degree)"
+    )]
+    NoDigitsLeft {
+        /// Its degree.
+        degree: usize,
+        /// Bound on the error of its values relative to their usual size.
+        uncertainty: f64,
+    },
     /// The solid is so small or so far away that its numbers cannot tell its points apart.
     #[error("the solid's extent is too large or too small for floating point")]
     ExtentOutOfRange,

@@ -166,7 +166,8 @@ fn primitive(halves: &[Half], members: &[(usize, Sense)]) -> Result<Primitive, E
         let Half { polynomial, error } = &halves[half];
         let largest = polynomial.max_abs();
         let scaled = polynomial.clone().scaled(1.0 / largest)?;
-        Ok((scaled, error / largest + f64::EPSILON))
+        let sum: f64 = scaled.coefficients().iter().map(|c| c.abs()).sum();
+        Ok((scaled, error / largest + f64::EPSILON * sum))
     };
     let (polynomial, mut coefficient_error): (Polynomial, f64) = scaled(members[0].0)?;
     for &(half, sense) in &members[1..] {
@@ -176,7 +177,7 @@ fn primitive(halves: &[Half], members: &[(usize, Sense)]) -> Result<Primitive, E
         let (other, error) = scaled(half)?;
         let sign = if sense == members[0].1 { 1.0 } else { -1.0 };
         let pairs = polynomial.coefficients().iter().zip(other.coefficients());
-        let apart = pairs.fold(0.0, |m: f64, (a, b)| m.max((a - sign * b).abs()));
+        let apart: f64 = pairs.map(|(a, b)| (a - sign * b).abs()).sum();
         coefficient_error = coefficient_error.max(error + apart);
     }
     Ok(Primitive {

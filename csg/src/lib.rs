@@ -49,6 +49,7 @@ mod lower;
 mod matrix;
 mod model;
 mod polynomial;
+mod precision;
 mod propagate;
 mod shape;
 mod shapes;
@@ -71,7 +72,7 @@ pub use shapes::{
     Block, ConvexPolyhedron, Cylinder, Ellipsoid, Frustum, HalfSpace, Helicoid, Prism, Quadric,
     Torus,
 };
-pub use solid::{Material, NearlyEqual, Primitive, Solid};
+pub use solid::{Imprecise, Material, NearlyEqual, Primitive, Solid};
 pub use surface::{QuadricForm, QuadricKind, Surface};
 pub use ternary::{LocalizeScratch, Ternary, localize};
 pub use transform::Transform;

@@ -30,7 +30,7 @@ pub(crate) enum Token {
 #[derive(Clone, Debug)]
 pub(crate) struct Half {
     pub(crate) polynomial: Polynomial,
-    /// Bound on the absolute error of each coefficient.
+    /// Bound on the sum of the coefficients' absolute errors.
     pub(crate) error: f64,
 }
 

@@ -8,7 +8,8 @@ pub struct Primitive {
     /// `p`, in the domain's centred coordinates, scaled so that the largest coefficient has absolute
     /// value 1; negative inside.
     pub polynomial: Polynomial,
-    /// Bound on the absolute error of each of its coefficients against the model as written.
+    /// Bound on the sum of its coefficients' absolute errors against the model as written, so also
+    /// on the error of its values in the domain.
     pub coefficient_error: f64,
 }
 
@@ -28,6 +29,16 @@ pub struct NearlyEqual {
     pub second: PrimitiveId,
     /// Largest difference of their coefficients, both scaled to a largest coefficient of 1.
     pub difference: f64,
+}
+
+/// A primitive whose coefficients have lost digits to cancellation.
+#[derive(Clone, Copy, PartialEq, Debug)]
+pub struct Imprecise {
+    /// The primitive.
+    pub primitive: PrimitiveId,
+    /// Bound on the error of its values in the domain, relative to the size that three quarters of
+    /// them exceed.
+    pub uncertainty: f64,
 }
 
 /// A solid ready for subdivision: a Boolean formula over interned polynomial half-spaces.
@@ -51,4 +62,6 @@ pub struct Solid {
     pub clipped: bool,
     /// Pairs of primitives that are suspiciously close to each other.
     pub nearly_equal: Vec<NearlyEqual>,
+    /// Primitives with few digits left.
+    pub imprecise: Vec<Imprecise>,
 }

@@ -136,7 +136,7 @@ impl<'a> Tracer<'a> {
                     continue;
                 }
                 // From the middle of the domain's side on: parameters stay small.
-                let unit = self.solid.domain.to_unit(origin);
+                let unit = 0.5 * self.solid.domain.to_centered(origin) + 0.5;
                 let unit = unit - direction * direction.dot(unit - DVec3::splat(0.5));
                 let start = coordinates(&sector.simplex, unit, 1.0);
                 if let Some(range) = range_inside(&start, &place.speed) {
@@ -290,7 +290,7 @@ impl Bundle<'_, '_> {
     fn solve(&mut self, place: &Place, frame: &Frame, pieces: &[Piece]) -> Result<(), Error> {
         let solid = self.tracer.solid;
         if frame.active.len() > MAX_LEAF_PRIMITIVES {
-            let at = solid.domain.to_model(place.simplex.vertices[0].position());
+            let at = solid.domain.from_unit(place.simplex.vertices[0].position());
             return Err(Error::TooManySurfaces {
                 count: frame.active.len(),
                 x: at.x,
@@ -310,13 +310,13 @@ impl Bundle<'_, '_> {
             let weights: [f64; 4] = at(from + (to - from) * entry.part);
             let unit: DVec3 = corners.iter().zip(weights).map(|(c, w)| *c * w).sum();
             let polynomial = &solid.primitives[entry.primitive.0 as usize].polynomial;
-            let gradient = polynomial.gradient(unit).try_normalize();
+            let gradient = polynomial.gradient(2.0 * unit - 1.0).try_normalize();
             let outward = match entry.label.sense {
                 Sense::Inside => gradient,
                 Sense::Outside => gradient.map(|g| -g),
             };
             self.hits[piece.ray as usize] = Some(Hit {
-                position: solid.domain.to_model(unit),
+                position: solid.domain.from_unit(unit),
                 normal: outward.unwrap_or(-self.direction),
                 primitive: entry.primitive,
                 sense: entry.label.sense,

@@ -51,7 +51,7 @@ pub(crate) fn of_halving(degree: usize, parent: f64, largest: f64) -> f64 {
 /// domain.
 #[must_use]
 pub(crate) fn of_model(primitive: &Primitive) -> f64 {
-    primitive.coefficient_error * primitive.polynomial.coefficients().len() as f64 * OUTWARD
+    primitive.coefficient_error * OUTWARD
 }
 
 #[cfg(test)]

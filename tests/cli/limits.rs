@@ -144,3 +144,40 @@ fn strict_turns_missing_proofs_and_warnings_into_failures() {
     assert_eq!(code, 1);
     assert!(said.contains("nothing was written"), "{said}");
 }
+
+/// Cells have at least 2⁻¹⁹ of the domain's size: beside a distance of 10⁶ a unit ball may get lost,
+/// and nobody is told that the result is exact.
+#[test]
+fn what_the_lattice_may_lose_is_said() {
+    let far = "multmatrix([[1,0,0,1000000],[0,1,0,0],[0,0,1,0],[0,0,0,1]]) { sphere(r=1); }";
+    let model = format!("union() {{ sphere(r=1); {far} }}");
+    let (code, said) = convert(&model, &["--tolerance", "0.1"]);
+    assert_eq!(code, 0, "{said}");
+    assert!(said.contains("may be missing"), "{said}");
+    assert!(
+        said.contains("cells not certified") && !said.contains("exact"),
+        "{said}"
+    );
+    let (code, said) = convert(&model, &["--tolerance", "0.1", "--strict"]);
+    assert_eq!(code, 1, "{said}");
+}
+
+#[test]
+fn nearly_equal_surfaces_are_named() {
+    let model = "union() { cube(1); multmatrix([[1,0,0,0],[0,1,0,0],[0,0,1,1e-8],[0,0,0,1]]) { cube(1); } }";
+    let (code, said) = convert(model, &[]);
+    assert_eq!(code, 0, "{said}");
+    assert!(
+        said.contains("nearly but not quite equal: 4 and 6 (by "),
+        "{said}"
+    );
+}
+
+/// Where radii of curvature are below some three tolerances the true boundary is not proved to be
+/// near the mesh.
+#[test]
+fn strict_counts_cells_certified_one_way() {
+    let (code, said) = convert("sphere(r=1);", &["--tolerance", "0.3", "--strict"]);
+    assert_eq!(code, 3, "{said}");
+    assert!(said.contains("cells are certified one way only"), "{said}");
+}

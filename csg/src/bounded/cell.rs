@@ -95,6 +95,12 @@ impl Cell {
         [0, 1].into_iter().fold(2, steeper)
     }
 
+    /// What one bisection costs.
+    pub(super) fn halving_work(&self) -> u64 {
+        let tensors = self.active.iter().map(|(_, tensor)| tensor);
+        tensors.map(|tensor| 8 + tensor.halving_work(0)).sum()
+    }
+
     /// The two halves along an axis, lower one first.
     pub(super) fn halves(&self, axis: usize, work: &mut u64) -> [Self; 2] {
         let (mut low, mut high) = (self.clone(), self.clone());

@@ -155,12 +155,12 @@ impl Polynomial {
         }
     }
 
-    /// Bound on the absolute error of each coefficient of `self.substituted(matrix)`, when the
+    /// Bound on the sum of the absolute errors of all coefficients of `self.substituted(matrix)`, when the
     /// entries of `matrix` are uncertain by those of `matrix_error`, and the coefficients of
     /// `self` by a few units in the last place.
     ///
-    /// With |p| the polynomial of absolute coefficients and s the column sums of |M|, every
-    /// coefficient of |p|(X |M|) is at most |p|(s), and its sensitivity at most the gradient.
+    /// With |p| the polynomial of absolute coefficients and s the column sums of |M|, the
+    /// coefficients of |p|(X |M|) sum up to |p|(s), and their sensitivities to the gradient.
     #[must_use]
     pub fn substitution_error(&self, matrix: &[[f64; 4]; 4], matrix_error: &[[f64; 4]; 4]) -> f64 {
         let column_sums = |m: &[[f64; 4]; 4]| -> [f64; 4] {

@@ -113,17 +113,17 @@ impl QuadricForm {
         self
     }
 
-    /// The form given in a domain's own coordinates, in model units.
+    /// The form given in a domain's centred coordinates, in model units.
     pub(super) fn in_model(self, domain: &Domain) -> Self {
         let scale = match self.kind {
             QuadricKind::EllipticCone
             | QuadricKind::Point
             | QuadricKind::CrossingPlanes
             | QuadricKind::Line => 1.0,
-            _ => domain.size(),
+            _ => domain.half_size(),
         };
         Self {
-            center: domain.to_model(self.center),
+            center: domain.from_centered(self.center),
             sizes: self.sizes.map(|size| size * scale),
             ..self
         }

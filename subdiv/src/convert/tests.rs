@@ -31,6 +31,7 @@ fn solid(polynomials: Vec<Polynomial>, nodes: Vec<FormulaNode>) -> Solid {
         materials: vec![],
         clipped: false,
         nearly_equal: vec![],
+        imprecise: vec![],
     }
 }
 

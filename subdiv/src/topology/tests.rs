@@ -389,7 +389,7 @@ proptest! {
         let shifted: Vec<BigRational> = coefficients.iter().zip(&power)
             .map(|(c, (_, up))| exact(*c) + exact(if *up { error } else { -error }))
             .collect();
-        let roots = RootCoefficients::new(&Primitive { polynomial, coefficient_error: error });
+        let roots = RootCoefficients::new(&Primitive { polynomial, coefficient_error: 10.0 * error });
         let table = DegreeTable::new(2);
         let mut simplex = Simplex::roots()[root];
         let mut coefficients = roots.roots[root].clone();

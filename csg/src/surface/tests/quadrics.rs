@@ -153,7 +153,7 @@ proptest! {
         };
         let domain = Domain::around(&crate::Aabb { min: DVec3::ZERO, max: DVec3::ONE });
         // The same quadric in the coordinates of a cube that is not the unit cube.
-        let (o, s) = (domain.origin(), domain.size());
+        let (o, s) = (domain.center(), domain.half_size());
         let inner = primitive.polynomial.substituted(&[
             [s, 0.0, 0.0, 0.0],
             [0.0, s, 0.0, 0.0],
