@@ -31,8 +31,8 @@ const SEARCH_WORK: u64 = 20_000_000;
 /// The same for the six directions of the final box, on which most depends.
 const AXIS_WORK: u64 = 60_000_000;
 
-/// Halvings that each search may make at least, whatever the degree: as many as find a ball's box
-/// to some percent. At degree 64 one of them costs nine million multiplications.
+/// Halvings that each search may make at least, whatever the degree: as many as find a cube
+/// to a half or better. At degree 64 one of them costs nine million multiplications.
 const LEAST_HALVINGS: u64 = 28;
 
 /// Solids that reach farther than this many frame sizes count as unbounded.
