@@ -133,12 +133,8 @@ fn almost_equal_surfaces_are_listed_and_manifold() {
 /// xⁿ + yⁿ + zⁿ ≤ 1 has volume 8 Γ(1 + 1/n)³/Γ(1 + 3/n). At a fixed level no tolerance bounds the
 /// difference, but the volume's interval holds.
 #[test]
-fn superballs_up_to_degree_64() {
-    for (n, exact) in [
-        (16, 7.863_500_266_128),
-        (32, 7.963_727_103_878),
-        (64, 7.990_650_945_697),
-    ] {
+fn superballs_up_to_degree_32() {
+    for (n, exact) in [(16, 7.863_500_266_128), (32, 7.963_727_103_878)] {
         let model = read(&format!("polynomial(\"x^{n}+y^{n}+z^{n}-1\");"));
         let solid = Solid::build(&model, None).expect("a bounded solid");
         // Whatever the degree, the box is found to a half of its size.

@@ -109,7 +109,7 @@ pub fn subdivide(
         })
         .collect();
     let (meshes, counts): (Vec<_>, Vec<_>) = parts?.into_iter().unzip();
-    let (fragments, _) = join(meshes, |unit| domain.to_model(unit));
+    let (fragments, _) = join(meshes, |unit| domain.from_unit(unit));
     let sum = |at: usize| counts.iter().map(|count| count[at]).sum();
     Ok(FunctionOutcome {
         fragments,
@@ -140,7 +140,7 @@ impl Descent<'_> {
         self.counts[0] += 1;
         let corners = simplex
             .vertices
-            .map(|vertex| self.domain.to_model(vertex.position()));
+            .map(|vertex| self.domain.from_unit(vertex.position()));
         for primitive in primitives(formula) {
             let function = &self.functions[primitive as usize];
             let range = range(function, &corners, self.bound, &mut self.scratch);
@@ -174,7 +174,7 @@ impl Descent<'_> {
             let offset = frame.coefficients.len() as u32;
             let function = &self.functions[primitive as usize];
             let scratch = &mut self.scratch;
-            let value = |unit: DVec3| function.value(self.domain.to_model(unit), scratch);
+            let value = |unit: DVec3| function.value(self.domain.from_unit(unit), scratch);
             frame.coefficients.extend(corners.map(value));
             frame.active.push(Active {
                 primitive,
@@ -194,7 +194,7 @@ impl Descent<'_> {
         extracted
             .map(|_| ())
             .map_err(|LeafError::TooManyPrimitives(count)| {
-                let place = self.domain.to_model(corners[0]);
+                let place = self.domain.from_unit(corners[0]);
                 Error::TooManySurfaces {
                     count,
                     x: place.x,

@@ -49,6 +49,10 @@ pub(super) fn farthest(
     let reach = |cell: &Cell| (d * cell.low).max(d * cell.high).element_sum();
     let widest = precision * (root.high - root.low);
     let narrow = (d.abs() * widest).element_sum();
+    // Where few halvings are affordable, cells that are flat in the direction decide more.
+    let is_dear = allowed < 200 * root.halving_work();
+    let weights = DVec3::select(d.cmpne(DVec3::ZERO), DVec3::splat(4.0), DVec3::ONE);
+    let weights = if is_dear { weights } else { DVec3::ONE };
     let mut work = 0;
     let mut scratch = LocalizeScratch::default();
     let mut queue = BinaryHeap::new();
@@ -69,8 +73,9 @@ pub(super) fn farthest(
         if is_narrow && sides.cmple(8.0 * widest).all() || work > allowed {
             return top.farthest;
         }
+        let weighted = sides * weights;
         let longer = |best: usize, axis: usize| {
-            if sides[axis] > sides[best] {
+            if weighted[axis] > weighted[best] {
                 axis
             } else {
                 best
