@@ -8,6 +8,9 @@ use std::collections::BTreeMap;
 /// OpenSCAD writes coordinates with six digits.
 const FLATNESS: f64 = 2e-6;
 
+/// The same for planes that are equal but for rounding.
+const SAME: f64 = 1e-12;
+
 /// Cosine of the largest angle between the normals of faces that are taken for coplanar.
 const PARALLEL: f64 = 0.999_999;
 
@@ -41,6 +44,12 @@ pub(super) struct Plane {
     pub(super) offset: f64,
 }
 
+/// A triangle with its plane, if it finds no company.
+struct Candidate {
+    corners: [DVec3; 3],
+    plane: Plane,
+}
+
 /// Triangles, and the planes that they lie in.
 #[derive(Debug)]
 pub(super) struct Faces {
@@ -48,6 +57,8 @@ pub(super) struct Faces {
     pub(super) planes: Vec<Plane>,
     /// Size of the polyhedron.
     pub(super) size: f64,
+    /// How far corners lie from the planes of their faces.
+    pub(super) slack: f64,
     pub(super) min: DVec3,
     pub(super) max: DVec3,
 }
@@ -80,23 +91,16 @@ impl Faces {
                 polygon.reverse();
             }
         }
-        let mut faces = Self {
-            triangles: Vec::new(),
-            planes: Vec::new(),
-            size,
-            min,
-            max,
-        };
         // The largest of coplanar faces knows its plane best.
         polygons.sort_by(|a, b| {
             let (a, b) = (vector_area(a), vector_area(b));
             b.length_squared().total_cmp(&a.length_squared())
         });
-        let mut buckets = BTreeMap::new();
+        let mut pieces = Vec::new();
         for polygon in polygons {
-            faces.add(&polygon, &mut buckets)?;
+            cut(&polygon, FLATNESS * size, &mut pieces)?;
         }
-        Ok(faces)
+        Ok(Self::of_pieces(&pieces, [min, max]))
     }
 
     /// Takes triangles, counter-clockwise from outside, that need not close.
@@ -104,60 +108,77 @@ impl Faces {
         let all = || triangles.iter().flatten();
         let min = all().fold(DVec3::INFINITY, |m, p| m.min(*p));
         let max = all().fold(DVec3::NEG_INFINITY, |m, p| m.max(*p));
+        let pieces = triangles.into_iter().filter_map(|corners| {
+            let plane = plane_of(&corners)?;
+            Some(Candidate { corners, plane })
+        });
+        Self::of_pieces(&pieces.collect::<Vec<_>>(), [min, max])
+    }
+
+    /// Puts triangles into common planes: those that hang together by edges and are flat within
+    /// the digits of files, and others only where they have the same plane but for rounding. So
+    /// the triangles of a mesh that is curved keep their own planes, which meet in its vertices.
+    fn of_pieces(pieces: &[Candidate], [min, max]: [DVec3; 2]) -> Self {
+        let size = min.distance(max);
         let mut faces = Self {
-            triangles: Vec::new(),
+            triangles: Vec::with_capacity(pieces.len()),
             planes: Vec::new(),
-            size: min.distance(max),
+            size,
+            slack: 0.0,
             min,
             max,
         };
+        let mut at_edge: BTreeMap<[[u64; 3]; 2], Vec<usize>> = BTreeMap::new();
+        for (at, piece) in pieces.iter().enumerate() {
+            for edge in edges(&piece.corners) {
+                at_edge.entry(edge).or_default().push(at);
+            }
+        }
         let mut buckets = BTreeMap::new();
-        for triangle in triangles {
-            if let Some(plane) = plane_of(&triangle) {
-                faces.push(triangle, plane, &mut buckets);
+        let mut placed = vec![false; pieces.len()];
+        let mut waiting = Vec::new();
+        for seed in 0..pieces.len() {
+            let Some(first) = pieces
+                .get(seed)
+                .filter(|_| placed.get(seed) == Some(&false))
+            else {
+                continue;
+            };
+            let at = faces.plane(first, &mut buckets);
+            let Some(plane) = faces.planes.get(at).copied() else {
+                continue;
+            };
+            waiting.push(seed);
+            while let Some(next) = waiting.pop() {
+                let (Some(piece), Some(is_placed)) = (pieces.get(next), placed.get_mut(next))
+                else {
+                    continue;
+                };
+                let Some(along) = plane.holds(piece, FLATNESS * size).filter(|_| !*is_placed)
+                else {
+                    continue;
+                };
+                *is_placed = true;
+                let corners = piece.corners;
+                let away = corners.map(|p| (plane.normal.dot(p) - plane.offset).abs());
+                faces.slack = away.into_iter().fold(faces.slack, f64::max);
+                faces.triangles.push(Triangle {
+                    corners,
+                    plane: at,
+                    along,
+                });
+                let beside = edges(&corners).into_iter().filter_map(|e| at_edge.get(&e));
+                waiting.extend(beside.flatten());
             }
         }
         faces
     }
 
-    fn add(
-        &mut self,
-        polygon: &[DVec3],
-        buckets: &mut BTreeMap<i64, Vec<usize>>,
-    ) -> Result<(), Unsound> {
-        let flat = FLATNESS * self.size;
-        let Some(normal) = vector_area(polygon).try_normalize() else {
-            return Ok(());
-        };
-        let offset = normal.dot(polygon.iter().sum::<DVec3>() / polygon.len() as f64);
-        let is_flat = |plane: &Plane| {
-            let mut away = polygon.iter().map(|p| plane.normal.dot(*p) - plane.offset);
-            away.all(|d| d.abs() <= flat)
-        };
-        let triangles = triangulate(polygon, normal).ok_or(Unsound::Crossing)?;
-        let own = Plane { normal, offset };
-        if !is_flat(&own) {
-            // OpenSCAD, too, splits faces that are not plane, along whichever diagonals.
-            for triangle in triangles {
-                let plane = plane_of(&triangle);
-                if let Some(plane) = plane {
-                    self.push(triangle, plane, buckets);
-                }
-            }
-            return Ok(());
-        }
-        for triangle in triangles {
-            self.push(triangle, own, buckets);
-        }
-        Ok(())
-    }
-
-    /// Adds a triangle in a known plane, or in this one.
-    fn push(&mut self, corners: [DVec3; 3], own: Plane, buckets: &mut BTreeMap<i64, Vec<usize>>) {
-        let flat = FLATNESS * self.size;
-        // Distances of coplanar planes from the middle differ little.
+    /// The plane of a triangle: a known one where that is the same but for rounding.
+    fn plane(&mut self, piece: &Candidate, buckets: &mut BTreeMap<i64, Vec<usize>>) -> usize {
+        // Distances of equal planes from the middle differ little.
         let middle = 0.5 * (self.min + self.max);
-        let reach = own.normal.dot(middle) - own.offset;
+        let reach = piece.plane.normal.dot(middle) - piece.plane.offset;
         let width = self.size * 1e-3;
         #[expect(
             clippy::cast_possible_truncation,
@@ -167,29 +188,62 @@ impl Faces {
         let near = (bucket - 1..=bucket + 1)
             .filter_map(|b| buckets.get(&b))
             .flatten();
-        let known = near.copied().find_map(|at| {
-            let plane = self.planes.get(at)?;
-            let cosine = plane.normal.dot(own.normal);
-            let same = cosine.abs() > PARALLEL
-                && corners
-                    .iter()
-                    .all(|p| (plane.normal.dot(*p) - plane.offset).abs() <= flat);
-            same.then_some((at, cosine > 0.0))
+        let known = near.copied().find(|at| {
+            let plane = self.planes.get(*at);
+            plane.is_some_and(|p| p.holds(piece, SAME * self.size).is_some())
         });
-        let (plane, along) = known.unwrap_or_else(|| {
-            self.planes.push(own);
-            buckets
-                .entry(bucket)
-                .or_default()
-                .push(self.planes.len() - 1);
-            (self.planes.len() - 1, true)
-        });
-        self.triangles.push(Triangle {
-            corners,
-            plane,
-            along,
-        });
+        known.unwrap_or_else(|| {
+            self.planes.push(piece.plane);
+            let at = self.planes.len() - 1;
+            buckets.entry(bucket).or_default().push(at);
+            at
+        })
     }
+}
+
+impl Plane {
+    /// Whether a triangle lies in the plane within a distance; then whether its normal is the
+    /// plane's.
+    fn holds(&self, piece: &Candidate, within: f64) -> Option<bool> {
+        let cosine = self.normal.dot(piece.plane.normal);
+        let mut away = piece
+            .corners
+            .iter()
+            .map(|p| self.normal.dot(*p) - self.offset);
+        let holds = cosine.abs() > PARALLEL && away.all(|d| d.abs() <= within);
+        holds.then_some(cosine > 0.0)
+    }
+}
+
+/// Cuts a face into triangles with its plane or, where it is not plane, their own: OpenSCAD, too,
+/// splits such faces, along whichever diagonals.
+fn cut(polygon: &[DVec3], flat: f64, pieces: &mut Vec<Candidate>) -> Result<(), Unsound> {
+    let Some(normal) = vector_area(polygon).try_normalize() else {
+        return Ok(());
+    };
+    let offset = normal.dot(polygon.iter().sum::<DVec3>() / polygon.len() as f64);
+    let own = Plane { normal, offset };
+    let mut away = polygon.iter().map(|p| normal.dot(*p) - offset);
+    let is_flat = away.all(|d| d.abs() <= flat);
+    let triangles = triangulate(polygon, normal).ok_or(Unsound::Crossing)?;
+    pieces.extend(triangles.into_iter().filter_map(|corners| {
+        let plane = if is_flat {
+            Some(own)
+        } else {
+            plane_of(&corners)
+        };
+        plane.map(|plane| Candidate { corners, plane })
+    }));
+    Ok(())
+}
+
+/// The edges of a triangle, whichever way.
+fn edges(&[a, b, c]: &[DVec3; 3]) -> [[[u64; 3]; 2]; 3] {
+    [[a, b], [b, c], [c, a]].map(|ends| {
+        let mut keys = ends.map(|p| p.to_array().map(f64::to_bits));
+        keys.sort_unstable();
+        keys
+    })
 }
 
 /// Every edge must be passed as often one way as the other.

@@ -37,8 +37,13 @@ const CANDIDATES: usize = 12;
 /// Cells with more faces are split by axis-parallel planes.
 const CROWD: usize = 16;
 
-/// Distance from a plane within which points count as lying in it, in sizes of the polyhedron.
-const NEAR: f64 = 4e-6;
+/// Distance from a plane within which points count as lying in it, in sizes of the polyhedron,
+/// besides how far corners are from the planes of their own faces.
+const NEAR: f64 = 1e-10;
+
+fn near(faces: &Faces) -> f64 {
+    NEAR * faces.size + 2.0 * faces.slack
+}
 
 /// The formula of a polyhedron.
 ///
@@ -48,7 +53,7 @@ pub(super) fn formula(faces: &mut Faces) -> Result<Vec<Piece>, Unsound> {
         Cell(Vec<Triangle>),
         Part(Piece),
     }
-    let near = NEAR * faces.size;
+    let near = near(faces);
     let mut left = (faces.triangles.len() + 50) * MOST_PIECES;
     let mut pieces = Vec::new();
     let mut tasks = vec![Task::Cell(faces.triangles.clone())];
@@ -291,7 +296,7 @@ fn contains(pieces: &[Piece], ends: &[usize], planes: &[Plane], point: DVec3) ->
 /// Whether the formula is false just before each face and true just behind, which it is not
 /// when faces cross.
 pub(super) fn is_bounded_by(pieces: &[Piece], faces: &Faces) -> bool {
-    let height = 20.0 * NEAR * faces.size;
+    let height = 20.0 * near(faces);
     let ends = ends(pieces);
     let mut seen = faces.triangles.iter().filter(|t| {
         let [a, b, c] = t.corners;
