@@ -1,4 +1,5 @@
-//! Real OpenSCAD dumps against the values that other programs computed for them.
+//! Real OpenSCAD dumps against the values that other programs computed for them, and what is said
+//! about those that are refused.
 
 #![allow(clippy::unwrap_used, reason = "a panic is how a test fails")]
 
@@ -9,17 +10,28 @@ use stages::convert_model;
 use std::fs;
 use subdiv::Rule;
 
-const FOLDER: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/fixtures/third_party/openscad");
+const FOLDER: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/fixtures/third_party");
 
-#[test]
-fn core_dumps_have_their_reference_values() {
-    let text = fs::read_to_string(format!("{FOLDER}/reference.json")).unwrap();
+/// Meshes of the reference fell into slivers where surfaces touch; their bodies are not counted.
+const SLIVERS: [&str; 1] = ["nopscadlib_rod_ends.csg"];
+
+/// Bodies that touch themselves: joined there in the reference's meshes, apart in ours, or as the
+/// rounding of the file's six digits has it.
+const OTHER_GENUS: [&str; 3] = [
+    "example017.csg",
+    "module-recursion.csg",
+    "rotate_extrude-touch-vertex.csg",
+];
+
+/// Compares all files of a folder that have a reference.
+fn compare(folder: &str, count: usize) {
+    let folder = format!("{FOLDER}/{folder}");
+    let text = fs::read_to_string(format!("{folder}/reference.json")).unwrap();
     let references: Value = serde_json::from_str(&text).unwrap();
     let references = references.as_object().unwrap();
-    assert_eq!(references.len(), 31);
-    let mut compared = 0;
+    assert_eq!(references.len(), count);
     for (file, reference) in references {
-        let source = fs::read_to_string(format!("{FOLDER}/{file}")).unwrap();
+        let source = fs::read_to_string(format!("{folder}/{file}")).unwrap();
         let number = |key: &str| reference[key].as_f64();
         let expected = number("volume").unwrap();
         let model = stages::read(&source);
@@ -58,30 +70,88 @@ fn core_dumps_have_their_reference_values() {
                 );
             }
         }
+        if SLIVERS.contains(&file.as_str()) {
+            continue;
+        }
         let bodies = reference["bodies"].as_u64().unwrap();
         assert_eq!(converted.shells.solids.len() as u64, bodies, "{file}");
-        // Where surfaces only touch, rounding of the file's six digits decides how many handles
-        // there are; everywhere else the topology is the reference's, which sums genus over
-        // bodies as 1 − χ/2 of the whole.
-        if converted.report.uncertified_leaves == 0 {
+        if !OTHER_GENUS.contains(&file.as_str()) {
+            // The reference sums genus over bodies as 1 − χ/2 of the whole.
             let genus = reference["genus"].as_i64().unwrap();
             let shells = i64::try_from(converted.shells.shells.len()).unwrap();
-            assert_eq!(
-                converted.shells.genus().cast_signed() - shells + 1,
-                genus,
-                "{file}"
-            );
-            compared += 1;
+            let found = converted.shells.genus().cast_signed() - shells + 1;
+            assert_eq!(found, genus, "{file}");
         }
     }
-    assert!(compared >= 20, "genus compared for {compared} files only");
+}
+
+#[test]
+fn core_dumps_have_their_reference_values() {
+    compare("openscad", 31);
+}
+
+#[test]
+fn other_dumps_have_their_reference_values() {
+    compare("openscad_more", 25);
+}
+
+/// Every other dump is a sound solid, too.
+#[test]
+fn dumps_without_reference_convert() {
+    let folder = format!("{FOLDER}/openscad_more");
+    let text = fs::read_to_string(format!("{folder}/reference.json")).unwrap();
+    let references: Value = serde_json::from_str(&text).unwrap();
+    let mut count = 0;
+    for entry in fs::read_dir(folder).unwrap() {
+        let path = entry.unwrap().path();
+        let name = path.file_name().unwrap().to_string_lossy().into_owned();
+        if name.ends_with(".csg") && references.get(&name).is_none() {
+            let source = fs::read_to_string(&path).unwrap();
+            let converted = convert_model(&stages::read(&source), Rule::Tolerance(0.3));
+            assert!(converted.properties.volume > 0.0, "{name}");
+            count += 1;
+        }
+    }
+    assert_eq!(count, 7);
+}
+
+/// What no solid can be made of is refused with its name, line and reason.
+#[test]
+fn refused_dumps_say_why() {
+    for (file, expected) in [
+        ("allmodules.csg", "`text` is not supported"),
+        ("fill2-tests.csg", ":41:4: `text` is not supported"),
+        (
+            "hull2-tests.csg",
+            "the model is 2-D only: `circle` has no volume",
+        ),
+        (
+            "minkowski2-tests.csg",
+            "the model is 2-D only: `square` has no volume",
+        ),
+        (
+            "polygon-tests.csg",
+            "the model is 2-D only: `polygon` has no volume",
+        ),
+        ("roof.csg", ":1:1: `roof` is not supported"),
+        (
+            "surface-simple.csg",
+            ":1:1: cannot read \"surface-simple.dat\"",
+        ),
+    ] {
+        let source = fs::read_to_string(format!("{FOLDER}/openscad_refused/{file}")).unwrap();
+        let options = io::read::ReadOptions::default();
+        let refused = io::read::scad_csg::read(&source, file, &options);
+        let told = refused.expect_err(file).as_slice()[0].to_string();
+        assert!(told.contains(expected), "{told}");
+    }
 }
 
 /// A Menger sponge of 221 cubes: where many planes crowd in a leaf, pieces must not fold over
 /// each other. manifold3d's area of it, to all digits that the reference gives, is 130468.34.
 #[test]
 fn crowded_pieces_do_not_fold() {
-    let source = fs::read_to_string(format!("{FOLDER}/example024.csg")).unwrap();
+    let source = fs::read_to_string(format!("{FOLDER}/openscad/example024.csg")).unwrap();
     let converted = convert_model(&stages::read(&source), Rule::Tolerance(0.1));
     let area = converted.properties.area;
     assert!((area - 130_468.34).abs() <= 0.005, "{area}");

@@ -1,89 +1,9 @@
-//! OpenSCAD's extrusions, polyhedra and hulls: real dumps against other programs' values, and
-//! volumes that have a formula.
+//! OpenSCAD's extrusions, polyhedra, hulls and sums against volumes that have a formula.
 
 mod stages;
 
-use serde_json::Value;
-use stages::{Converted, convert, convert_model};
+use stages::{Converted, convert};
 use std::f64::consts::PI;
-use std::fs;
-use subdiv::Rule;
-
-const FOLDER: &str = concat!(
-    env!("CARGO_MANIFEST_DIR"),
-    "/fixtures/third_party/openscad_more"
-);
-
-/// Meshes of the reference fell into slivers where surfaces touch; their bodies are not counted.
-const SLIVERS: [&str; 1] = ["nopscadlib_rod_ends.csg"];
-
-/// Bodies that touch themselves: joined there in the reference's meshes, apart in ours.
-const OTHER_GENUS: [&str; 2] = ["example017.csg", "rotate_extrude-touch-vertex.csg"];
-
-#[test]
-fn dumps_have_their_reference_values() {
-    let text = fs::read_to_string(format!("{FOLDER}/reference.json")).unwrap();
-    let references: Value = serde_json::from_str(&text).unwrap();
-    let references = references.as_object().unwrap();
-    assert_eq!(references.len(), 22);
-    for (file, reference) in references {
-        let source = fs::read_to_string(format!("{FOLDER}/{file}")).unwrap();
-        let number = |key: &str| reference[key].as_f64().unwrap();
-        let bounds: Vec<f64> = reference["bbox"]
-            .as_array()
-            .unwrap()
-            .iter()
-            .map(|x| x.as_f64().unwrap())
-            .collect();
-        let size = (0..3)
-            .map(|a| bounds[a + 3] - bounds[a])
-            .fold(0.0, f64::max);
-        let tolerance = 1e-3 * size;
-        let converted = convert_model(&stages::read(&source), Rule::Tolerance(tolerance));
-        let properties = &converted.properties;
-        let allowed = number("volume_tol") + 1.1 * properties.area * tolerance;
-        let difference = (properties.volume - number("volume")).abs();
-        assert!(difference <= allowed, "{file}: volume off by {difference}");
-        let allowed = number("bbox_tol") + tolerance;
-        for (side, corner) in [properties.bounds.min, properties.bounds.max]
-            .iter()
-            .enumerate()
-        {
-            for axis in 0..3 {
-                let off = (corner[axis] - bounds[3 * side + axis]).abs();
-                assert!(
-                    off <= allowed,
-                    "{file}: box off by {off}, axis {axis}, side {side}"
-                );
-            }
-        }
-        if !SLIVERS.contains(&file.as_str()) {
-            let bodies = reference["bodies"].as_u64().unwrap();
-            assert_eq!(converted.shells.solids.len() as u64, bodies, "{file}");
-            // Of the reference, 1 − χ/2 of all bodies together.
-            let genus = reference["genus"].as_i64().unwrap() + bodies.cast_signed() - 1;
-            if !OTHER_GENUS.contains(&file.as_str()) {
-                assert_eq!(converted.shells.genus().cast_signed(), genus, "{file}");
-            }
-        }
-    }
-}
-
-/// Every other dump is a sound solid, too.
-#[test]
-fn dumps_without_reference_convert() {
-    let mut count = 0;
-    for entry in fs::read_dir(FOLDER).unwrap() {
-        let path = entry.unwrap().path();
-        if path.extension().is_some_and(|e| e == "csg") {
-            let source = fs::read_to_string(&path).unwrap();
-            let converted = convert_model(&stages::read(&source), Rule::Tolerance(0.3));
-            assert!(converted.properties.volume > 0.0, "{}", path.display());
-            count += 1;
-        }
-    }
-    assert_eq!(count, 26);
-}
 
 /// Converts and compares with the formula's volume; `curved`: area of the curved faces, whose
 /// facets may be off by the tolerance.

@@ -1,5 +1,6 @@
 //! The command line as users see it: transcripts, and what does not fit into one.
 
+mod files;
 mod limits;
 mod properties;
 mod streams;

@@ -76,8 +76,8 @@ pub(super) fn read(
         Some("amf") => &amf::read,
         Some("dxf" | "svg") => {
             let message = format!("\"{path}\" is a drawing, which is not read");
-            let remedy = "let OpenSCAD turn it into a polygon: render the 2-D part alone and \
-                          export it as DXF or SVG, then write its points as a polygon";
+            let remedy = "let OpenSCAD make a mesh of what is extruded from it, as in \
+                          openscad -o part.off part.scad, and import that";
             return Err(complaints.error(at, message, remedy.to_owned()));
         }
         _ => {

@@ -117,9 +117,10 @@ const fn refused(name: &'static str, remedy: &'static str) -> Entry {
     entry(name, Kind::Refused(remedy), &[])
 }
 
-const FONT: &str = "convert the text to polygons first, for instance by exporting it as SVG";
-const MESH: &str = "write the part as unions, intersections and differences of shapes";
-const DRAWING: &str = "drawings are not read: let OpenSCAD turn it into a polygon";
+const FONT: &str = "let OpenSCAD make a mesh of the extruded text, as in openscad -o text.off text.scad, \
+                    and write import(\"text.off\") in its place";
+const MESH: &str = "let OpenSCAD make a mesh of this part, as in openscad -o part.off part.scad, \
+                    and write import(\"part.off\") in its place";
 
 /// What OpenSCAD writes for imported files; only the name of the file matters for meshes.
 const IMPORT: [&str; 10] = [
@@ -176,13 +177,13 @@ const ENTRIES: [Entry; 42] = [
     leaf("import", Leaf::Import, &IMPORT),
     leaf("import_stl", Leaf::Import, &IMPORT),
     leaf("import_off", Leaf::Import, &IMPORT),
-    refused("import_dxf", DRAWING),
+    refused("import_dxf", MESH),
     leaf("surface", Leaf::Surface, &["file", "center", "invert"]),
     refused("roof", MESH),
     refused("glide", MESH),
     refused("subdiv", MESH),
-    refused("dxf_linear_extrude", DRAWING),
-    refused("dxf_rotate_extrude", DRAWING),
+    refused("dxf_linear_extrude", MESH),
+    refused("dxf_rotate_extrude", MESH),
     leaf("torus", Leaf::Torus, &["r1", "r2"]),
     leaf("halfspace", Leaf::HalfSpace, &["n", "d"]),
     leaf("quadric", Leaf::Quadric, &["m"]),

@@ -18,7 +18,7 @@ fn unknown_and_unsupported_nodes_are_named() {
         ("wheel_hub(3);", "t.csg:1:1: unknown node `wheel_hub`"),
         (
             "cube(1);\nroof() { square(1); }",
-            "t.csg:2:1: `roof` is not supported (write the part as unions, intersections and differences of shapes)",
+            "t.csg:2:1: `roof` is not supported (let OpenSCAD make a mesh of this part, as in openscad -o part.off part.scad, and write import(\"part.off\") in its place)",
         ),
         (
             "surface(file = \"a.dat\"); surface(file = \"b.dat\");",
@@ -26,7 +26,7 @@ fn unknown_and_unsupported_nodes_are_named() {
         ),
         (
             "text(\"a\");",
-            "t.csg:1:1: `text` is not supported (convert the text to polygons first, for instance by exporting it as SVG)",
+            "t.csg:1:1: `text` is not supported (let OpenSCAD make a mesh of the extruded text, as in openscad -o text.off text.scad, and write import(\"text.off\") in its place)",
         ),
         (
             "circle(r = 1);",
@@ -45,7 +45,7 @@ fn several_errors_are_told_at_once() {
         [
             "t.csg:2:14: `size` must be a list of 3 numbers, found `\"a\"`",
             "t.csg:3:2: unknown node `cubee` (did you mean `cube`?)",
-            "t.csg:4:2: `roof` is not supported (write the part as unions, intersections and differences of shapes)",
+            "t.csg:4:2: `roof` is not supported (let OpenSCAD make a mesh of this part, as in openscad -o part.off part.scad, and write import(\"part.off\") in its place)",
             "t.csg:5:13: `r` must be a number, found `[1]`",
         ]
     );
