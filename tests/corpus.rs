@@ -105,7 +105,8 @@ fn dumps_without_reference_convert() {
     for entry in fs::read_dir(folder).unwrap() {
         let path = entry.unwrap().path();
         let name = path.file_name().unwrap().to_string_lossy().into_owned();
-        if name.ends_with(".csg") && references.get(&name).is_none() {
+        let is_dump = path.extension().is_some_and(|e| e == "csg");
+        if is_dump && references.get(&name).is_none() {
             let source = fs::read_to_string(&path).unwrap();
             let converted = convert_model(&stages::read(&source), Rule::Tolerance(0.3));
             assert!(converted.properties.volume > 0.0, "{name}");

@@ -263,17 +263,25 @@ fn outlines_move_as_their_formulas_say() {
     );
 }
 
-/// A torus of flat triangles against the divergence theorem's sum over them.
+/// Tori of flat triangles, smooth and bumpy, against the divergence theorem's sum over them.
 #[test]
 fn dented_polyhedra_have_the_volume_of_their_mesh() {
-    let (rings, sides) = (12_usize, 8_usize);
+    dented_torus(12, 8, 0.0);
+    dented_torus(60, 20, 0.1);
+}
+
+/// With coordinates of six decimals, as OpenSCAD writes them.
+fn dented_torus(rings: usize, sides: usize, bumps: f64) {
+    let six = |x: f64| (x * 1e6).round() / 1e6;
     let mut points = Vec::new();
     for i in 0..rings {
         for j in 0..sides {
             let a = 2.0 * PI * i as f64 / rings as f64;
             let b = 2.0 * PI * j as f64 / sides as f64;
-            let radius = 3.0 + b.cos();
-            points.push([radius * a.cos(), radius * a.sin(), b.sin()]);
+            let tube = 1.0 + bumps * (7.0 * a + 3.0 * b).sin();
+            let radius = 3.0 + bumps * (5.0 * a).cos() + tube * b.cos();
+            let point = [radius * a.cos(), radius * a.sin(), tube * b.sin()];
+            points.push(point.map(six));
         }
     }
     let mut faces = Vec::new();

@@ -9,10 +9,10 @@ const TETRAHEDRON: &str =
 
 /// What is said about a model in a folder.
 fn said(folder: &Path, model: &str) -> (bool, String) {
-    fs::write(folder.join("model.csg"), model).unwrap();
+    fs::write(folder.join("model.csg"), model).expect("a folder to write to");
     let mut command = csg2brep();
     command.args(["model.csg", "-o", "-", "--to", "stl"]);
-    let output = command.current_dir(folder).output().unwrap();
+    let output = command.current_dir(folder).output().expect("the program");
     let said = String::from_utf8_lossy(&output.stderr).into_owned();
     (output.status.success(), said)
 }
