@@ -1,13 +1,16 @@
-//! Compares csg2brep with fidget on seven solids at equal measured error, in one run.
+//! Compares csg2brep with manifold3d and fidget on seven solids at equal measured error, in one
+//! run.
 //!
 //! ```text
 //! cargo run --release --manifest-path benches/peers/Cargo.toml [-- [SOLID …]]
 //! ```
 //!
-//! For each solid and each target error, fidget's grid and our tolerance (and, third, our fixed
-//! level) are chosen as coarse as the measured error allows; then all run in turn, one thread
-//! each, and their least times are compared. Prints Markdown.
+//! For each solid and each target error, manifold3d's segments, fidget's grid, our tolerance, our
+//! tolerance for facets from the true surfaces and our fixed level are chosen as coarse as the
+//! measured error allows; then all run in turn, one thread each, and their least times are
+//! compared. Prints Markdown.
 
+mod manifold;
 mod measure;
 mod memory;
 mod search;
@@ -17,6 +20,7 @@ mod tools;
 mod truth;
 
 use glam::DVec3;
+use manifold::Manifold;
 use measure::Spread;
 use search::{Attempt, Setting};
 use solids::Solid;
@@ -37,15 +41,26 @@ const MEASURES: [(&str, Which); 2] = [
     ("all but one sample in a thousand", |spread| spread.usual),
 ];
 
+/// The ways that are compared, in this order.
+const WAYS: [&str; 6] = [
+    "surfaces",
+    "surfaces, mean fit",
+    "tolerance",
+    "level",
+    "manifold3d",
+    "fidget",
+];
+
 /// Timed runs of each program.
 const RUNS: usize = 9;
 
 fn main() {
     let wanted: Vec<String> = std::env::args().skip(1).collect();
+    let manifold = Manifold::start();
     let mut tables = [const { [const { Table::new() }; 2] }; 2];
     for solid in solids::all() {
         if wanted.is_empty() || wanted.iter().any(|name| name == solid.name) {
-            compare(&solid, &mut tables);
+            compare(&solid, &manifold, &mut tables);
         }
     }
     for (target, tables) in TARGETS.into_iter().zip(&tables) {
@@ -57,9 +72,10 @@ fn main() {
             );
             println!("|---|---|---|---:|---:|---:|---:|---:|\n{}", table.rows);
             println!(
-                "| ours / fidget | tolerance | tolerance, to B-Rep | fixed level | triangles |"
+                "| | surfaces / manifold3d | triangles | mean fit / manifold3d | triangles | \
+                 surfaces / fidget | tolerance / fidget | level / fidget |"
             );
-            println!("|---|---:|---:|---:|---:|\n{}", table.ratios);
+            println!("|---|---:|---:|---:|---:|---:|---:|---:|\n{}", table.ratios);
         }
     }
 }
@@ -82,12 +98,13 @@ impl Table {
 /// A solid under test.
 struct Subject<'a> {
     solid: &'a Solid,
+    manifold: &'a Manifold,
     model: csg::Model,
     truth: Truth<'a>,
 }
 
 /// Adds a solid to all tables.
-fn compare(solid: &Solid, tables: &mut [[Table; 2]; 2]) {
+fn compare(solid: &Solid, manifold: &Manifold, tables: &mut [[Table; 2]; 2]) {
     eprintln!("{} {}", solid.name, solid.what);
     let truth = Truth::new(solid, 200.0);
     let model = tools::model(solid);
@@ -95,15 +112,20 @@ fn compare(solid: &Solid, tables: &mut [[Table; 2]; 2]) {
     let side = truth.longest_side;
     let finest = TARGETS[0] * side;
     // A program's ways to the same end; the quickest that is close enough counts.
+    let surfaces = |fit| vec![search::our_surfaces(&model, &truth, &TARGETS, fit)];
     let ways = [
+        surfaces(brep::Fit::Inscribed),
+        surfaces(brep::Fit::Mean),
         vec![search::our_tolerances(&model, &truth, finest)],
         vec![search::our_levels(&model, &truth, finest)],
+        vec![search::manifold_segments(manifold, solid, &truth, finest)],
         [Form::Distance, Form::Polynomial]
             .map(|form| search::fidget_grids(solid, form, &truth, finest))
             .to_vec(),
     ];
     let subject = Subject {
         solid,
+        manifold,
         model,
         truth,
     };
@@ -127,6 +149,10 @@ impl Subject<'_> {
     fn time(&self, setting: Setting) -> f64 {
         match setting {
             Setting::Ours(rule) => milliseconds(|| tools::ours(&self.model, rule)),
+            Setting::Surfaces(tolerance, fit) => {
+                milliseconds(|| tools::ours_from_surfaces(&self.model, tolerance, fit))
+            }
+            Setting::Manifold(segments) => self.manifold.time(self.solid.name, segments),
             Setting::Fidget(form, grid) => {
                 let expression = tools::expression(self.solid, form);
                 milliseconds(|| tools::fidget(&expression, grid))
@@ -140,29 +166,27 @@ impl Subject<'_> {
             .fold(f64::MAX, f64::min)
     }
 
-    fn peak_bytes(&self, setting: Setting) -> usize {
-        match setting {
+    /// Of programs in this process.
+    fn peak_bytes(&self, setting: Setting) -> Option<usize> {
+        Some(match setting {
             Setting::Ours(rule) => memory::peak_of(|| tools::ours(&self.model, rule)).1,
+            Setting::Surfaces(tolerance, fit) => {
+                memory::peak_of(|| tools::ours_from_surfaces(&self.model, tolerance, fit)).1
+            }
+            Setting::Manifold(_) => return None,
             Setting::Fidget(form, grid) => {
                 let expression = tools::expression(self.solid, form);
                 memory::peak_of(|| tools::fidget(&expression, grid)).1
             }
-        }
+        })
     }
 
     /// Runs all in turn, so that what else the machine does hits all alike.
-    fn race(&self, chosen: [Option<Attempt>; 3], which: Which, table: &mut Table) {
-        let mut times = [const { Vec::new() }; 4];
+    fn race(&self, chosen: [Option<Attempt>; WAYS.len()], which: Which, table: &mut Table) {
+        let mut times = [const { Vec::new() }; WAYS.len()];
         for _ in 0..RUNS {
             for (attempt, times) in chosen.iter().zip(&mut times) {
                 times.extend(attempt.map(|attempt| self.time(attempt.setting)));
-            }
-            if let Some(Attempt {
-                setting: Setting::Ours(rule),
-                ..
-            }) = chosen[0]
-            {
-                times[3].push(milliseconds(|| tools::ours_to_brep(&self.model, rule)));
             }
         }
         for times in &mut times {
@@ -173,24 +197,30 @@ impl Subject<'_> {
                 table.rows += &self.row(attempt, times, which);
             }
         }
+        let at = |way: &str| WAYS.iter().position(|w| *w == way).expect("a way");
         // The least time is what the machine's other work disturbs least.
-        let ratio = |at: usize| match (times[at].first(), times[2].first()) {
+        let time = |one: &str, other: &str| match (times[at(one)].first(), times[at(other)].first())
+        {
             (Some(ours), Some(theirs)) => format!("{:.2}", ours / theirs),
             _ => "–".to_owned(),
         };
-        let triangles = match chosen {
-            [Some(ours), _, Some(theirs)] => {
+        let triangles = |one: &str, other: &str| match (chosen[at(one)], chosen[at(other)]) {
+            (Some(ours), Some(theirs)) => {
                 format!("{:.2}", ours.triangles as f64 / theirs.triangles as f64)
             }
             _ => "–".to_owned(),
         };
         table.ratios += &format!(
-            "| {} {} | {} | {} | {} | {triangles} |\n",
+            "| {} {} | {} | {} | {} | {} | {} | {} | {} |\n",
             self.solid.name,
             self.solid.what,
-            ratio(0),
-            ratio(3),
-            ratio(1),
+            time("surfaces", "manifold3d"),
+            triangles("surfaces", "manifold3d"),
+            time("surfaces, mean fit", "manifold3d"),
+            triangles("surfaces, mean fit", "manifold3d"),
+            time("surfaces", "fidget"),
+            time("tolerance", "fidget"),
+            time("level", "fidget"),
         );
     }
 
@@ -199,6 +229,15 @@ impl Subject<'_> {
         let (program, mut setting) = match attempt.setting {
             Setting::Ours(Rule::Tolerance(t)) => ("ours", format!("tolerance {:.1e}", t / side)),
             Setting::Ours(Rule::Level(level)) => ("ours", format!("level {level}")),
+            Setting::Ours(Rule::Topology { finest }) => ("ours", format!("cells {finest:.1e}")),
+            Setting::Surfaces(t, brep::Fit::Inscribed) => {
+                ("ours", format!("surfaces, tolerance {:.2e}", t / side))
+            }
+            Setting::Surfaces(t, brep::Fit::Mean) => (
+                "ours",
+                format!("surfaces, mean fit, tolerance {:.2e}", t / side),
+            ),
+            Setting::Manifold(segments) => ("manifold3d", format!("{segments} segments")),
             Setting::Fidget(form, Grid { depth, half, .. }) => {
                 let cube = 2.0 * half / side;
                 ("fidget", format!("{form:?}, depth {depth}, cube {cube:.2}"))
@@ -208,14 +247,17 @@ impl Subject<'_> {
             setting += &format!(", {} vertices NaN", attempt.not_numbers);
         }
         format!(
-            "| {} | {program} | {setting} | {} | {:.1} ({:.1}) | {:.1e} | {:.1e} | {:.0} |\n",
+            "| {} | {program} | {setting} | {} | {:.1} ({:.1}) | {:.1e} | {:.1e} | {} |\n",
             self.solid.name,
             attempt.triangles,
             times[times.len() / 2],
             times[0],
             which(attempt.distances.to_boundary) / side,
             which(attempt.distances.to_mesh) / side,
-            self.peak_bytes(attempt.setting) as f64 / attempt.triangles as f64,
+            self.peak_bytes(attempt.setting)
+                .map_or("–".to_owned(), |peak| {
+                    format!("{:.0}", peak as f64 / attempt.triangles as f64)
+                }),
         )
     }
 }

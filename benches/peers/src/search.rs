@@ -1,6 +1,7 @@
 //! From coarse to fine: what each program yields at many settings, and the coarsest that is close
 //! enough.
 
+use crate::manifold::Manifold;
 use crate::measure::{Distances, Spread, measure};
 use crate::solids::Solid;
 use crate::tools::{self, Form, Grid};
@@ -12,6 +13,10 @@ use subdiv::Rule;
 pub enum Setting {
     /// Ours.
     Ours(Rule),
+    /// Ours from the true surfaces, with a tolerance.
+    Surfaces(f64, brep::Fit),
+    /// manifold3d's number of segments a circle.
+    Manifold(u32),
     /// fidget's.
     Fidget(Form, Grid),
 }
@@ -75,6 +80,45 @@ pub fn our_tolerances(model: &csg::Model, truth: &Truth<'_>, finest: f64) -> Vec
     let rule =
         |k: i32| Rule::Tolerance(0.25 * truth.longest_side * 0.25f64.powf(f64::from(k) / 8.0));
     ours((0..64).map(rule), model, truth, finest)
+}
+
+/// Parts of a target error at which our tolerance is tried: it is what is measured, nearly.
+const NEAR: [f64; 10] = [1.5, 1.35, 1.2, 1.1, 1.0, 0.95, 0.9, 0.8, 0.7, 0.5];
+
+/// Our meshes from the true surfaces, at tolerances near the targets.
+pub fn our_surfaces(
+    model: &csg::Model,
+    truth: &Truth<'_>,
+    targets: &[f64],
+    fit: brep::Fit,
+) -> Vec<Attempt> {
+    let mut list = Vec::new();
+    for target in targets {
+        for part in NEAR {
+            let tolerance = part * target * truth.longest_side;
+            let Some(brep) = tools::ours_from_surfaces(model, tolerance, fit) else {
+                continue;
+            };
+            let setting = Setting::Surfaces(tolerance, fit);
+            list.extend(Attempt::of(setting, &tools::brep_mesh(&brep), truth));
+        }
+    }
+    list
+}
+
+/// manifold3d's meshes with more and more segments.
+pub fn manifold_segments(
+    manifold: &Manifold,
+    solid: &Solid,
+    truth: &Truth<'_>,
+    finest: f64,
+) -> Vec<Attempt> {
+    let segments = (0..40).map(|k| 2 * (4.0 * 1.12f64.powi(k)).round() as u32);
+    let attempts = segments.map(|segments| {
+        let mesh = manifold.mesh(solid.name, segments)?;
+        Attempt::of(Setting::Manifold(segments), &mesh, truth)
+    });
+    until(finest, attempts)
 }
 
 /// Our meshes at rising levels.

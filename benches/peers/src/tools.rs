@@ -16,11 +16,30 @@ pub fn ours(model: &csg::Model, rule: subdiv::Rule) -> subdiv::Outcome {
     subdiv::convert(&solid, &settings, &()).expect("a conversion within the limits")
 }
 
-/// The same, stitched and validated.
-pub fn ours_to_brep(model: &csg::Model, rule: subdiv::Rule) -> brep::Valid<brep::Brep> {
-    let outcome = ours(model, rule);
+/// Topology proved, then facets from the true surfaces, as a validated B-Rep.
+pub fn ours_from_surfaces(
+    model: &csg::Model,
+    tolerance: f64,
+    fit: brep::Fit,
+) -> Option<brep::Valid<brep::Brep>> {
+    let solid = csg::Solid::build(model, None).expect("a bounded solid");
+    let rule = subdiv::Rule::Topology { finest: tolerance };
+    let mut settings = subdiv::Settings::new(rule);
+    settings.threads = Some(1);
+    let outcome = subdiv::convert(&solid, &settings, &()).expect("a conversion within the limits");
     let stitched = brep::stitch(&outcome.fragments).expect("paired half-edges");
-    stitched.validate().expect("a manifold")
+    let coarse = stitched.validate().expect("a manifold");
+    Some(brep::tessellate(&coarse, &solid, tolerance, fit)?.0)
+}
+
+/// A B-Rep's triangles as a mesh.
+pub fn brep_mesh(brep: &brep::Brep) -> Mesh {
+    let numbers = brep.number_vertices();
+    let corners = |facet: brep::FacetView<'_>| facet.vertices().map(|v| numbers[v.key()]);
+    Mesh::new(
+        brep.vertices().map(|v| v.position()).collect(),
+        brep.facets().map(corners).collect(),
+    )
 }
 
 /// The model of a solid's file.
