@@ -7,29 +7,10 @@ mod stages;
 mod support;
 
 use io::write::{gltf, obj, stl};
-use stages::{Converted, convert_solid, read};
+use stages::{Converted, convert_solid, models, read};
 use std::fs;
 use std::path::{Path, PathBuf};
 use subdiv::{Rule, Settings};
-
-const ROOT: &str = env!("CARGO_MANIFEST_DIR");
-
-fn models() -> Vec<PathBuf> {
-    let folders = [
-        "fixtures/solids",
-        "fixtures/models",
-        "fixtures/thesis",
-        "fixtures/third_party/openscad",
-    ];
-    let mut models: Vec<PathBuf> = folders
-        .iter()
-        .flat_map(|folder| fs::read_dir(Path::new(ROOT).join(folder)).unwrap())
-        .map(|entry| entry.unwrap().path())
-        .filter(|path| path.extension().is_some_and(|end| end == "csg"))
-        .collect();
-    models.sort();
-    models
-}
 
 /// Converts at a tolerance of 1 % of the diagonal.
 fn convert_file(path: &Path, threads: usize) -> Converted {

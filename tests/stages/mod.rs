@@ -4,7 +4,29 @@
 
 use brep::{Brep, Groups, Properties, Shells, Valid};
 use csg::{Model, Solid};
+use std::fs;
+use std::path::{Path, PathBuf};
 use subdiv::{Report, Rule, Settings};
+
+const ROOT: &str = env!("CARGO_MANIFEST_DIR");
+
+/// Every model in `fixtures/`, sorted.
+pub(crate) fn models() -> Vec<PathBuf> {
+    let folders = [
+        "fixtures/solids",
+        "fixtures/models",
+        "fixtures/thesis",
+        "fixtures/third_party/openscad",
+    ];
+    let mut models: Vec<PathBuf> = folders
+        .iter()
+        .flat_map(|folder| fs::read_dir(Path::new(ROOT).join(folder)).expect("a folder"))
+        .map(|entry| entry.expect("a file").path())
+        .filter(|path| path.extension().is_some_and(|end| end == "csg"))
+        .collect();
+    models.sort();
+    models
+}
 
 /// A converted model.
 pub(crate) struct Converted {
