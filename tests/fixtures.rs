@@ -9,7 +9,7 @@ mod support;
 use io::write::{gltf, obj, stl};
 use stages::{Converted, convert_solid, models, read};
 use std::fs;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use subdiv::{Rule, Settings};
 
 /// Converts at a tolerance of 1 % of the diagonal.
@@ -107,7 +107,7 @@ fn crossing_triangles_are_found() {
 #[test]
 fn bytes_do_not_depend_on_threads() {
     for name in ["solids/S2_demo", "solids/S5_ring128", "models/tee"] {
-        let path = Path::new(ROOT).join(format!("fixtures/{name}.csg"));
+        let path = Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("fixtures/{name}.csg"));
         let expected = files(&convert_file(&path, 1));
         for threads in [2, 7] {
             let found = files(&convert_file(&path, threads));

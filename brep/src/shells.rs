@@ -111,7 +111,8 @@ impl Shells {
     }
 }
 
-/// Volumes by the divergence theorem, each relative to its shell's box centre.
+/// Volumes by the divergence theorem, each relative to its shell's box centre; zero where the
+/// rounding of positions alone could have made it, so that a speck is no void by chance.
 fn signed_volumes(brep: &Brep, components: &Components, bounds: &[Aabb]) -> Vec<f64> {
     let mut sums = vec![Sum::default(); bounds.len()];
     for (key, &component) in &components.component_of {
@@ -123,7 +124,18 @@ fn signed_volumes(brep: &Brep, components: &Components, bounds: &[Aabb]) -> Vec<
             .map(|position| position - centre);
         sums[component as usize].add(a.dot(b.cross(c)));
     }
-    sums.into_iter().map(|sum| sum.value() / 6.0).collect()
+    let volumes = sums
+        .into_iter()
+        .zip(bounds)
+        .map(|(sum, Aabb { min, max })| {
+            let volume = sum.value() / 6.0;
+            let [x, y, z] = (*max - *min).to_array();
+            let farthest = min.abs().max(max.abs()).max_element();
+            // Each face of the box moved by a few units in the last place.
+            let rounding = 8.0 * f64::EPSILON * farthest * 2.0 * (x * y + y * z + z * x);
+            if volume.abs() > rounding { volume } else { 0.0 }
+        });
+    volumes.collect()
 }
 
 /// The connected components alone, without any coordinates.

@@ -59,6 +59,9 @@ pub struct Tessellated {
 /// Rounds of refinement where faces are nearer to each other than the tolerance.
 const ROUNDS: usize = 6;
 
+/// Times as many facets as the tolerance asks for, after which making them smaller is given up.
+const GROWTH: usize = 8;
+
 /// Flips after one change, at most: they come to an end by themselves, but for rounding.
 const FLIPS: usize = 64;
 
@@ -83,8 +86,13 @@ pub fn tessellate(
     let mut tolerances: Vec<f64> = (groups.faces.iter())
         .map(|face| fit.inscribed_tolerance(&sheets[face.primitive.0 as usize], tolerance))
         .collect();
+    let mut most_facets = usize::MAX;
     for round in 0..ROUNDS {
-        let mut run = Run::new(brep, &groups, &sheets, &tolerances, solid);
+        let mut run = Run::new(brep, &groups, &sheets, &tolerances, solid, most_facets);
+        if round == 0 {
+            run.most_facets = GROWTH * run.mesh.face.len() + 1024;
+            most_facets = run.most_facets;
+        }
         if fit == Fit::Mean {
             run.fit_mean(tolerance);
         }
@@ -100,7 +108,9 @@ pub fn tessellate(
                 };
                 return Some((result, counts));
             }
-            Err(troubles) if troubles.is_empty() => return None,
+            Err(troubles) if troubles.is_empty() || run.mesh.face.len() > most_facets => {
+                return None;
+            }
             Err(troubles) => {
                 for (face, finer) in assemble::finer_faces(&troubles) {
                     tolerances[face] *= finer;
@@ -124,6 +134,8 @@ struct Run<'a> {
     /// Distances that count as none.
     rounding: f64,
     kept_edges: usize,
+    /// Splits end when there are more, removed ones included.
+    most_facets: usize,
 }
 
 impl<'a> Run<'a> {
@@ -133,6 +145,7 @@ impl<'a> Run<'a> {
         sheets: &'a [Sheet<'a>],
         tolerances: &'a [f64],
         solid: &Solid,
+        most_facets: usize,
     ) -> Self {
         let of_face: Vec<&Sheet<'_>> = (groups.faces.iter())
             .map(|face| &sheets[face.primitive.0 as usize])
@@ -148,6 +161,7 @@ impl<'a> Run<'a> {
             tolerances,
             rounding: 4.0 * f64::EPSILON * largest.max(solid.domain.size()),
             kept_edges: 0,
+            most_facets,
         };
         this.orient();
         this.settle();

@@ -64,8 +64,7 @@ mod tests {
     use super::*;
     use crate::Polynomial;
 
-    /// (x + 1)⁴⁰, written out: its coefficients sum up to 2⁴⁰, most of its values are below 1e-3
-    /// of that.
+    /// (x − 1)ⁿ, written out: its coefficients sum up to 2ⁿ, most of its values are far below.
     #[test]
     fn cancelling_coefficients_are_noticed() {
         let x = Polynomial::affine(DVec3::X, -1.0).unwrap();
@@ -81,6 +80,7 @@ mod tests {
         // Three in five values are at most 1: the quarter lies at (3/5)ⁿ or below.
         let expected = |n: f64, at: f64| 12.0 * (n + 6.0) * f64::EPSILON * (2.0 / at).powf(n);
         assert!((uncertain[1] / expected(20.0, 0.6) - 1.0).abs() < 0.01);
-        assert!((uncertain[2] / expected(60.0, 0.6) - 1.0).abs() < 0.01);
+        // Here even the values that it is compared with are noise.
+        assert!(uncertain[2] > HOPELESS);
     }
 }

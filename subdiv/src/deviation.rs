@@ -35,6 +35,12 @@ const MOST_TWO_SIDED: usize = 3;
 /// More would be arranged as exactly, but it takes less time to bisect.
 const MOST_PLANES: usize = 48;
 
+/// Number of planes that are bisected rather than accepted as they are, above [`CROWDED_LEVEL`].
+const FEW_PLANES: usize = 16;
+
+/// Level from which on any leaf of planes is accepted as it is.
+const CROWDED_LEVEL: u8 = 12;
+
 /// See [`MOST_PLANES`].
 const MOST_CROSSINGS: usize = 100;
 
@@ -87,12 +93,21 @@ impl DeviationRule {
         let mut near = std::mem::take(&mut self.near);
         let result = self.test_near(plan, margin, simplex, frame, (&place, &mut near));
         self.near = near;
-        result.or_else(|reason| self.test_planes(plan, frame, &place).ok_or(reason))
+        result.or_else(|reason| {
+            self.test_planes(plan, simplex.level, frame, &place)
+                .ok_or(reason)
+        })
     }
 
     /// Planes are their own interpolants and are arranged exactly: where nothing else matters,
     /// the mesh is the true boundary but for rounding.
-    fn test_planes(&mut self, plan: &Plan<'_>, frame: &Frame, place: &Place) -> Option<Proved> {
+    fn test_planes(
+        &mut self,
+        plan: &Plan<'_>,
+        level: u8,
+        frame: &Frame,
+        place: &Place,
+    ) -> Option<Proved> {
         let mut needed = ArrayVec::<u32, MOST_PLANES>::new();
         for node in frame.formula_within() {
             if let FormulaNode::Literal(literal) = node
@@ -100,6 +115,10 @@ impl DeviationRule {
             {
                 needed.try_push(literal.primitive.0).ok()?;
             }
+        }
+        // A few are better taken apart first, and then proved in both directions.
+        if level < CROWDED_LEVEL && needed.len() <= FEW_PLANES {
+            return None;
         }
         let around = Around {
             radius: place.tolerance,

@@ -26,7 +26,8 @@ impl Run<'_> {
                 break;
             };
             most = most.min(WORSE * troubles.len());
-            if troubles.len() > most || !self.split_troubled(troubles) {
+            let is_too_large = self.mesh.face.len() > self.most_facets;
+            if is_too_large || troubles.len() > most || !self.split_troubled(troubles) {
                 break;
             }
             self.straighten();

@@ -50,7 +50,7 @@ impl Run<'_> {
         let mut left = SPLITS;
         let (mut open, mut touched) = (Vec::new(), Vec::new());
         while let Some(candidate) = heap.pop() {
-            if left == 0 {
+            if left == 0 || self.mesh.face.len() > self.most_facets {
                 break;
             }
             if self.mesh.corners(candidate.facet) != candidate.corners {
