@@ -277,6 +277,20 @@ mod tests {
         assert_eq!(shells.solids[1].voids, [ShellId(2)]);
     }
 
+    /// Positions a few units in the last place apart enclose nothing, whichever way round: a
+    /// cube of that size far from the origin, and one of 1e-9 that does count.
+    #[test]
+    fn a_speck_of_rounding_is_no_void() {
+        let speck = |half: f64| moved(cube([0.0; 3], half), |p| p + DVec3::new(3.0, 2.0, 1.0));
+        let half = 4.0 * f64::EPSILON;
+        for fragments in [speck(half), void(speck(half))] {
+            assert_eq!(shells(&[fragments]).shells[0].role, ShellRole::Outer);
+        }
+        let shells = shells(&[void(speck(1e-9))]);
+        assert!((shells.shells[0].volume / -8e-27 - 1.0).abs() < 1e-5);
+        assert_eq!(shells.shells[0].role, ShellRole::Void);
+    }
+
     #[test]
     fn a_void_in_nothing_is_stray() {
         let shells = shells(&[void(cube([0.0; 3], 1.0))]);

@@ -281,25 +281,6 @@ fn combine(builder: &mut ModelBuilder, parts: &[Part]) -> NodeId {
     all
 }
 
-#[test]
-fn shells_that_touch_in_an_edge_stay_one_or_two() {
-    let part = |kind, operation, axis, offset| Part {
-        kind,
-        operation,
-        axis,
-        offset,
-        jitter: 0.0,
-    };
-    let parts = [
-        part(2, 0, 1, [-2, 1, 0]),
-        part(3, 2, 2, [-2, 1, 0]),
-        part(4, 3, 1, [1, -2, -1]),
-    ];
-    let model = model(|builder| combine(builder, &parts));
-    let (leaves, planes) = leaves(&model, 9);
-    merge(&leaves, &planes);
-}
-
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(300))]
 
