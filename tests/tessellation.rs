@@ -60,6 +60,16 @@ fn write(brep: &Valid<Brep>, path: &Path) {
     io::write::obj::write(brep, &io::write::obj::Options::default(), &mut file).unwrap();
 }
 
+/// manifold3d and CGAL find nothing wrong.
+fn judge(paths: &[PathBuf]) {
+    for report in support::manifold_report(paths) {
+        assert_eq!(report.status, "NoError", "{report:?}");
+    }
+    for report in support::intersection_report(paths) {
+        assert_eq!(report.crossings, 0, "{report:?}");
+    }
+}
+
 fn solid(name: &str) -> Solid {
     let path = Path::new(env!("CARGO_MANIFEST_DIR"))
         .join("fixtures")
@@ -110,12 +120,7 @@ fn fixtures_keep_their_topology_and_do_not_cross_themselves() {
             paths.push(path);
         }
     }
-    for report in support::manifold_report(&paths) {
-        assert_eq!(report.status, "NoError", "{report:?}");
-    }
-    for report in support::intersection_report(&paths) {
-        assert_eq!(report.crossings, 0, "{report:?}");
-    }
+    judge(&paths);
 }
 
 #[test]
@@ -210,12 +215,7 @@ fn a_mean_fit_keeps_volumes_planes_and_the_tolerance_with_fewer_triangles() {
             paths.push(path);
         }
     }
-    for report in support::manifold_report(&paths) {
-        assert_eq!(report.status, "NoError", "{report:?}");
-    }
-    for report in support::intersection_report(&paths) {
-        assert_eq!(report.crossings, 0, "{report:?}");
-    }
+    judge(&paths);
 }
 
 /// Random trees in general position: what is proved must tessellate to a manifold of the same
@@ -258,12 +258,7 @@ fn random_trees_keep_their_topology() {
         "{count} trees, seed {seed}: {} tessellated, {failed} could not be",
         paths.len()
     );
-    for report in support::manifold_report(&paths) {
-        assert_eq!(report.status, "NoError", "{report:?}");
-    }
-    for report in support::intersection_report(&paths) {
-        assert_eq!(report.crossings, 0, "{report:?}");
-    }
+    judge(&paths);
     // Where it cannot be done, the caller is told; that must stay rare.
     assert!(
         failed * 40 <= paths.len(),
@@ -290,10 +285,5 @@ fn edges_in_one_place_get_the_same_points() {
         write(&brep, &path);
         paths.push(path);
     }
-    for report in support::manifold_report(&paths) {
-        assert_eq!(report.status, "NoError", "{report:?}");
-    }
-    for report in support::intersection_report(&paths) {
-        assert_eq!(report.crossings, 0, "{report:?}");
-    }
+    judge(&paths);
 }
