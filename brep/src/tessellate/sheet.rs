@@ -100,6 +100,7 @@ impl<'a> Sheet<'a> {
 
     /// Distance from the surface, signed, and the unit normal there (to the first order for
     /// implicit surfaces). The normal is zero where there is none.
+    #[inline(always)]
     pub(super) fn at(&self, p: DVec3) -> (f64, DVec3) {
         match *self {
             Self::Plane { normal, offset } => (normal.dot(p) - offset, normal),
@@ -163,38 +164,7 @@ impl<'a> Sheet<'a> {
 
     /// The distance that [`Self::at`] gives, without the normal.
     pub(super) fn distance(&self, p: DVec3) -> f64 {
-        match *self {
-            Self::Plane { normal, offset } => normal.dot(p) - offset,
-            Self::Sphere { center, radius } => p.distance(center) - radius,
-            Self::Cylinder {
-                point,
-                axis,
-                radius,
-            } => (p - point).reject_from_normalized(axis).length() - radius,
-            Self::Cone {
-                apex,
-                axis,
-                cos,
-                sin,
-            } => {
-                let from_apex = p - apex;
-                let height = from_apex.dot(axis);
-                let out = (from_apex - height * axis).length();
-                out * cos - height.abs() * sin
-            }
-            Self::Torus {
-                center,
-                axis,
-                ring,
-                tube,
-            } => {
-                let from_center = p - center;
-                let height = from_center.dot(axis);
-                let out = (from_center - height * axis).length() - ring;
-                (out * out + height * height).sqrt() - tube
-            }
-            Self::Implicit { .. } => self.at(p).0,
-        }
+        self.at(p).0
     }
 
     /// The point of the surface below or above `p`, along its normals.
