@@ -10,7 +10,7 @@ use crate::run::Job;
 use crate::summary::{counted, significant};
 use crate::talk::Talk;
 use brep::simplify::remove_degenerate;
-use brep::{Brep, Groups, Properties, Quality, Retriangulated, Shells, Valid};
+use brep::{Brep, Groups, IfTroubled, Properties, Quality, Retriangulated, Shells, Valid};
 use csg::{PrimitiveId, Solid};
 use io::read::format::Format;
 use subdiv::{Fragments, Rule};
@@ -63,7 +63,7 @@ pub(crate) fn run(
         report.warnings.push(warning);
     }
 
-    let brep = mesh(&solid, job, talk, progress, report)?;
+    let brep = mesh(&solid, job, progress, report)?;
     if let Some(warning) = too_coarse(report) {
         talk.warn(&warning);
         report.warnings.push(warning);
@@ -97,36 +97,40 @@ fn measured(boundary: Boundary, progress: &Progress, report: &mut Report) -> Bou
 fn mesh(
     solid: &Solid,
     job: &Job,
-    talk: Talk,
     progress: &Progress,
     report: &mut Report,
 ) -> Result<Valid<Brep>, Failure> {
     let rule = job.rule(solid.extent.diagonal());
+    let mut own = None;
     if job.mesh == MeshKind::Surfaces
         && let Rule::Tolerance(tolerance) | Rule::Topology { finest: tolerance } = rule
     {
-        let coarse = subdivided(
-            solid,
-            job,
-            Rule::Topology { finest: tolerance },
-            progress,
-            report,
-        )?;
-        progress.begin("tessellation");
-        let tessellated = report.timed("tessellation", || {
-            brep::tessellate(&coarse, solid, tolerance, job.fit)
-        });
-        stop_if_interrupted()?;
-        if let Some((brep, counts)) = tessellated {
-            report.add_tessellation(&counts);
-            return Ok(brep);
+        // The second way is the one whose facets are within the tolerance: single faces keep them.
+        for (rule, if_troubled) in [
+            (Rule::Topology { finest: tolerance }, IfTroubled::Refine),
+            (Rule::Tolerance(tolerance), IfTroubled::Keep),
+        ] {
+            let brep = subdivided(solid, job, rule, progress, report)?;
+            progress.begin("tessellation");
+            let tessellated = report.timed("tessellation", || {
+                brep::tessellate(&brep, solid, tolerance, job.fit, if_troubled)
+            });
+            stop_if_interrupted()?;
+            if let Some((brep, counts)) = tessellated {
+                report.add_tessellation(&counts);
+                if counts.kept_faces == 0 {
+                    return Ok(brep);
+                }
+                let (brep, ..) = report.timed("merging", || merge(brep, solid))?;
+                return Ok(brep);
+            }
+            own = Some(brep);
         }
-        let warning = "some faces cannot be tessellated from their surfaces at this tolerance: \
-                       the facets are those of the subdivision";
-        talk.warn(warning);
-        report.warnings.push(warning.to_owned());
     }
-    let brep = subdivided(solid, job, rule, progress, report)?;
+    let brep = match own {
+        Some(brep) => brep,
+        None => subdivided(solid, job, rule, progress, report)?,
+    };
     if job.mesh == MeshKind::Leaves {
         report.counts.leaf_facets = brep.facet_count() as u64;
         return Ok(brep);

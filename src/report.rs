@@ -142,6 +142,8 @@ pub(crate) struct Counts {
     pub(crate) unmerged_faces: u64,
     /// Faces whose facets were taken from their surfaces.
     pub(crate) tessellated_faces: u64,
+    /// Faces that were to get such facets and kept the subdivision's, since others would pass through each other.
+    pub(crate) kept_faces: u64,
     /// B-Rep edges that could not be followed, so that they kept the subdivision's vertices.
     pub(crate) kept_edges: u64,
     /// Triangles written.
@@ -253,11 +255,20 @@ impl Report {
         sizes.max_by(f64::total_cmp)
     }
 
-    /// The proved deviation in words: `exact`, where nothing but the rounding of numbers is left
-    /// and nothing is unproved.
+    /// The deviation in words, and whether it is proved: `exact`, where nothing but the rounding
+    /// of numbers is left and nothing is unproved.
     pub(crate) fn deviation(&self) -> Option<String> {
-        let distance = self.proved_distance?;
         let rounding = 1e-9 * self.settings.tolerance.unwrap_or(0.0);
+        if let Some(distance) = self.largest_deviation {
+            let is_exact = distance <= rounding && self.proved_topology;
+            let measured = || format!("deviation {} (measured)", rounded_up(distance));
+            return Some(if is_exact {
+                "exact".to_owned()
+            } else {
+                measured()
+            });
+        }
+        let distance = self.proved_distance?;
         let is_whole = self.uncertified_count == 0 && self.one_way_cells == 0;
         let bound = match (distance <= rounding, is_whole) {
             (true, true) => return Some("exact".to_owned()),
@@ -315,8 +326,11 @@ impl Report {
     pub(crate) fn add_tessellation(&mut self, of: &Tessellated) {
         self.counts.leaf_facets = of.facets_before as u64;
         self.counts.tessellated_faces = of.faces as u64;
+        self.counts.kept_faces = of.kept_faces as u64;
         self.counts.kept_edges = of.kept_edges as u64;
         self.largest_deviation = Some(of.largest_deviation);
+        // What was proved of the subdivision's facets says nothing about these.
+        self.proved_distance = None;
     }
 
     /// What is known about the solid before it is subdivided.

@@ -39,9 +39,6 @@ fn facts(report: &Report) -> Vec<String> {
     }
     facts.push("watertight".to_owned());
     facts.extend(report.deviation());
-    if let Some(distance) = report.largest_deviation {
-        facts.push(format!("deviation {} (measured)", rounded_up(distance)));
-    }
     if report.proved_topology {
         facts.push("topology proved".to_owned());
     }

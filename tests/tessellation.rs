@@ -11,7 +11,8 @@ mod stages;
 mod support;
 mod trees;
 
-use brep::{Brep, Fit, Groups, Properties, Shells, Tessellated, Valid, tessellate};
+use brep::simplify::remove_degenerate;
+use brep::{Brep, Fit, Groups, IfTroubled, Properties, Shells, Tessellated, Valid, tessellate};
 use csg::{Model, Solid};
 use rayon::prelude::*;
 use std::f64::consts::PI;
@@ -26,25 +27,39 @@ fn tessellated(solid: &Solid, tolerance: f64) -> Option<(Valid<Brep>, Tessellate
 }
 
 fn fitted(solid: &Solid, tolerance: f64, fit: Fit) -> Option<(Valid<Brep>, Tessellated, bool)> {
-    let rule = Rule::Topology { finest: tolerance };
+    let (coarse, report) = subdivided(solid, Rule::Topology { finest: tolerance });
+    let proved = report.proved_topology == Some(true);
+    let (brep, counts) = like(&coarse, solid, tolerance, fit, IfTroubled::Refine)?;
+    Some((brep, counts, proved))
+}
+
+fn subdivided(solid: &Solid, rule: Rule) -> (Valid<Brep>, subdiv::Report) {
     let settings = Settings {
         threads: Some(1),
         ..Settings::new(rule)
     };
     let outcome = subdiv::convert(solid, &settings, &()).unwrap();
-    let coarse = brep::stitch(&outcome.fragments)
-        .unwrap()
-        .validate()
-        .unwrap();
-    let proved = outcome.report.proved_topology == Some(true);
-    let (brep, counts) = tessellate(&coarse, solid, tolerance, fit)?;
-    let before = (signature(&coarse), Groups::of(&coarse));
+    let stitched = brep::stitch(&outcome.fragments).unwrap();
+    let (brep, _) = remove_degenerate(stitched.validate().unwrap()).unwrap();
+    (brep, outcome.report)
+}
+
+/// Tessellates, and sees to it that faces, edges and vertices are those of the subdivision.
+fn like(
+    coarse: &Valid<Brep>,
+    solid: &Solid,
+    tolerance: f64,
+    fit: Fit,
+    if_troubled: IfTroubled,
+) -> Option<(Valid<Brep>, Tessellated)> {
+    let (brep, counts) = tessellate(coarse, solid, tolerance, fit, if_troubled)?;
+    let before = (signature(coarse), Groups::of(coarse));
     let after = (signature(&brep), Groups::of(&brep));
     assert_eq!(before.0, after.0);
     assert_eq!(before.1.faces.len(), after.1.faces.len());
     assert_eq!(before.1.edges.len(), after.1.edges.len());
     assert_eq!(before.1.vertices.len(), after.1.vertices.len());
-    Some((brep, counts, proved))
+    Some((brep, counts))
 }
 
 /// Genus of each shell, sorted.
@@ -123,6 +138,52 @@ fn fixtures_keep_their_topology_and_do_not_cross_themselves() {
     judge(&paths);
 }
 
+/// Real models, whose parts touch, are tangent or nearly so: where faces cannot be tessellated they
+/// keep the facets of the metric rule. Where both rules are proved, they agree.
+#[test]
+fn every_fixture_comes_from_its_surfaces() {
+    let folder = tempfile::tempdir().unwrap();
+    let models = stages::models();
+    let results: Vec<(PathBuf, Tessellated, bool)> = (models.par_iter())
+        .filter_map(|path| {
+            let name = path.file_stem().unwrap().to_str().unwrap();
+            let solid =
+                Solid::build(&stages::read(&fs::read_to_string(path).unwrap()), None).unwrap();
+            if solid.primitives.is_empty() {
+                return None;
+            }
+            let tolerance = 0.01 * solid.extent.diagonal();
+            let fit = Fit::Inscribed;
+            let (metric, certified) = subdivided(&solid, Rule::Tolerance(tolerance));
+            let first = fitted(&solid, tolerance, fit);
+            let is_certified = certified.uncertified_leaves == 0;
+            let both = is_certified && first.as_ref().is_some_and(|(.., proved)| *proved);
+            if both {
+                let proved = &first.as_ref().unwrap().0;
+                assert_eq!(signature(proved), signature(&metric), "{name}");
+            }
+            let (brep, counts) = match first {
+                Some((brep, counts, _)) => (brep, counts),
+                None => like(&metric, &solid, tolerance, fit, IfTroubled::Keep).expect(name),
+            };
+            assert!(
+                counts.largest_deviation <= tolerance * 1.000_001,
+                "{name}: {counts:?}"
+            );
+            let path = folder.path().join(format!("{name}.obj"));
+            write(&brep, &path);
+            Some((path, counts, both))
+        })
+        .collect();
+    let paths: Vec<PathBuf> = results.iter().map(|(path, ..)| path.clone()).collect();
+    judge(&paths);
+    let sum = |of: fn(&Tessellated) -> usize| results.iter().map(|(_, c, _)| of(c)).sum::<usize>();
+    let (from_surfaces, kept) = (sum(|counts| counts.faces), sum(|counts| counts.kept_faces));
+    assert!(kept * 20 < from_surfaces, "{kept} beside {from_surfaces}");
+    let compared = results.iter().filter(|(.., both)| *both).count();
+    assert!(compared >= 20, "{compared}");
+}
+
 #[test]
 fn vertices_lie_on_the_surfaces_of_all_facets_around_them() {
     let solid = solid("solids/S2_demo.csg");
@@ -152,7 +213,8 @@ fn bytes_do_not_depend_on_threads() {
                 ..Settings::new(Rule::Topology { finest: tolerance })
             };
             let coarse = stages::convert_solid(solid.clone(), &settings).brep;
-            let (brep, _) = tessellate(&coarse, &solid, tolerance, Fit::Mean).unwrap();
+            let (brep, _) =
+                tessellate(&coarse, &solid, tolerance, Fit::Mean, IfTroubled::Refine).unwrap();
             let mut bytes = Vec::new();
             io::write::obj::write(&brep, &io::write::obj::Options::default(), &mut bytes).unwrap();
             bytes

@@ -32,8 +32,9 @@ mod straighten;
 
 use crate::group::{FaceId, Groups};
 use crate::topology::Brep;
+use crate::triangulate::retriangulate;
 use crate::validate::Valid;
-use csg::Solid;
+use csg::{PrimitiveId, Solid};
 pub use fit::Fit;
 use glam::DVec3;
 use patchwork::{NONE, Patchwork, Role, index};
@@ -44,6 +45,8 @@ use sheet::Sheet;
 pub struct Tessellated {
     /// Faces whose facets were taken from their surfaces.
     pub faces: usize,
+    /// Faces that keep the subdivision's facets, since others would pass through each other.
+    pub kept_faces: usize,
     /// Times that a part had to be tessellated more finely than its own deviation asked for.
     pub refinements: usize,
     /// B-Rep edges that keep the subdivision's vertices, since their surfaces are tangent.
@@ -56,14 +59,28 @@ pub struct Tessellated {
     pub largest_deviation: f64,
 }
 
-/// Rounds of refinement where faces are nearer to each other than the tolerance.
-const ROUNDS: usize = 6;
-
-/// Times as many facets as the tolerance asks for, after which making them smaller is given up.
-const GROWTH: usize = 8;
-
 /// Flips after one change, at most: they come to an end by themselves, but for rounding.
 const FLIPS: usize = 64;
+
+/// What to do with a face whose facets do not come out well: they pass through others, or do not
+/// fill it.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub enum IfTroubled {
+    /// Take smaller facets, a few times; then give up.
+    Refine,
+    /// Let it keep the boundary's own facets. They should be within the tolerance, then.
+    Keep,
+}
+
+impl IfTroubled {
+    /// Attempts, at most.
+    fn rounds(self) -> usize {
+        match self {
+            Self::Refine => 6,
+            Self::Keep => 24,
+        }
+    }
+}
 
 /// Replaces the facets of a boundary by such as its surfaces need at this tolerance, in model
 /// units. `solid` is what the boundary was made from; `fit` says on which side of the surfaces
@@ -76,6 +93,7 @@ pub fn tessellate(
     solid: &Solid,
     tolerance: f64,
     fit: Fit,
+    if_troubled: IfTroubled,
 ) -> Option<(Valid<Brep>, Tessellated)> {
     let groups = Groups::of(brep);
     let sheets: Vec<Sheet<'_>> = solid
@@ -83,15 +101,39 @@ pub fn tessellate(
         .iter()
         .map(|primitive| Sheet::of(primitive, &solid.domain))
         .collect();
+    let is_plane = |PrimitiveId(at): PrimitiveId| sheets[at as usize].is_plane();
+    if (groups.faces.iter()).all(|face| is_plane(face.primitive)) {
+        let (result, counts) = retriangulate(brep.clone(), is_plane);
+        let counts = Tessellated {
+            faces: counts.faces,
+            kept_faces: counts.kept,
+            facets_before: counts.facets_before,
+            facets_after: counts.facets_after,
+            ..Tessellated::default()
+        };
+        return Some((result, counts));
+    }
     let mut tolerances: Vec<f64> = (groups.faces.iter())
         .map(|face| fit.inscribed_tolerance(&sheets[face.primitive.0 as usize], tolerance))
         .collect();
-    let mut most_facets = usize::MAX;
-    for round in 0..ROUNDS {
-        let mut run = Run::new(brep, &groups, &sheets, &tolerances, solid, most_facets);
+    let mut kept = vec![false; groups.faces.len()];
+    let (mut most_facets, mut fewest) = (usize::MAX, usize::MAX);
+    for round in 0..if_troubled.rounds() {
+        let plan = Plan {
+            groups: &groups,
+            sheets: &sheets,
+            tolerances: &tolerances,
+            kept: &kept,
+            most_facets,
+        };
+        let mut run = Run::new(brep, plan, solid);
         if round == 0 {
-            run.most_facets = GROWTH * run.mesh.face.len() + 1024;
-            most_facets = run.most_facets;
+            let most = match if_troubled {
+                IfTroubled::Refine => 8 * run.mesh.face.len() + 1024,
+                IfTroubled::Keep => 2 * brep.facet_count() + 1024,
+            };
+            run.most_facets = most;
+            most_facets = most;
         }
         if fit == Fit::Mean {
             run.fit_mean(tolerance);
@@ -99,7 +141,8 @@ pub fn tessellate(
         match run.mended(tolerance) {
             Ok(result) => {
                 let counts = Tessellated {
-                    faces: groups.faces.len(),
+                    faces: groups.faces.len() - kept_faces(&kept),
+                    kept_faces: kept_faces(&kept),
                     refinements: round,
                     kept_edges: run.kept_edges,
                     facets_before: brep.facet_count(),
@@ -108,17 +151,46 @@ pub fn tessellate(
                 };
                 return Some((result, counts));
             }
-            Err(troubles) if troubles.is_empty() || run.mesh.face.len() > most_facets => {
-                return None;
-            }
             Err(troubles) => {
-                for (face, finer) in assemble::finer_faces(&troubles) {
-                    tolerances[face] *= finer;
+                let troubled = assemble::finer_faces(&troubles);
+                let is_hopeless = match if_troubled {
+                    IfTroubled::Refine => {
+                        troubled.len() >= fewest || run.mesh.face.len() > most_facets
+                    }
+                    IfTroubled::Keep => false,
+                };
+                if troubled.is_empty() || is_hopeless {
+                    return None;
+                }
+                fewest = troubled.len();
+                for (face, finer) in troubled {
+                    match if_troubled {
+                        IfTroubled::Refine => tolerances[face] *= finer,
+                        IfTroubled::Keep => kept[face] = true,
+                    }
                 }
             }
         }
     }
     None
+}
+
+fn kept_faces(kept: &[bool]) -> usize {
+    kept.iter().filter(|&&is_kept| is_kept).count()
+}
+
+/// What an attempt starts from.
+#[derive(Clone, Copy)]
+struct Plan<'a> {
+    groups: &'a Groups,
+    /// By primitive.
+    sheets: &'a [Sheet<'a>],
+    /// By face.
+    tolerances: &'a [f64],
+    /// By face: whether its facets stay, and with them all their corners.
+    kept: &'a [bool],
+    /// Splits end when there are more, removed ones included.
+    most_facets: usize,
 }
 
 /// One attempt, at given tolerances.
@@ -131,6 +203,8 @@ struct Run<'a> {
     outward: Vec<f64>,
     /// By face.
     tolerances: &'a [f64],
+    /// By face: whether its facets stay.
+    kept: &'a [bool],
     /// Distances that count as none.
     rounding: f64,
     kept_edges: usize,
@@ -139,29 +213,28 @@ struct Run<'a> {
 }
 
 impl<'a> Run<'a> {
-    fn new(
-        brep: &Brep,
-        groups: &'a Groups,
-        sheets: &'a [Sheet<'a>],
-        tolerances: &'a [f64],
-        solid: &Solid,
-        most_facets: usize,
-    ) -> Self {
+    fn new(brep: &Brep, plan: Plan<'a>, solid: &Solid) -> Self {
+        let groups = plan.groups;
         let of_face: Vec<&Sheet<'_>> = (groups.faces.iter())
-            .map(|face| &sheets[face.primitive.0 as usize])
+            .map(|face| &plan.sheets[face.primitive.0 as usize])
             .collect();
-        let is_plane = |FaceId(face)| of_face[face as usize].is_plane();
-        let (mesh, chains) = Patchwork::of(brep, groups, is_plane);
+        let is_capped = |FaceId(face)| {
+            let face = face as usize;
+            of_face[face].is_plane() && !plan.kept[face]
+        };
+        let (mut mesh, chains) = Patchwork::of(brep, groups, is_capped);
+        mesh.hold(plan.kept);
         let largest = (mesh.positions.iter()).fold(0.0, |m: f64, p| m.max(p.abs().max_element()));
         let mut this = Self {
             outward: vec![1.0; of_face.len()],
             mesh,
             groups,
             sheets: of_face,
-            tolerances,
+            tolerances: plan.tolerances,
+            kept: plan.kept,
             rounding: 4.0 * f64::EPSILON * largest.max(solid.domain.size()),
             kept_edges: 0,
-            most_facets,
+            most_facets: plan.most_facets,
         };
         this.orient();
         this.settle();
@@ -255,6 +328,10 @@ impl<'a> Run<'a> {
         let mut all_targets = Vec::with_capacity(chains.len());
         for (edge, chain) in self.groups.edges.iter().zip(chains) {
             let faces = edge.faces.map(|FaceId(face)| face as usize);
+            if faces.iter().any(|&face| self.kept[face]) {
+                all_targets.push(None);
+                continue;
+            }
             let sheets = faces.map(|face| self.sheets[face]);
             let primitives = faces.map(|face| self.groups.faces[face].primitive);
             // All but the ends of an open chain, which stay where they are.
@@ -284,7 +361,10 @@ impl<'a> Run<'a> {
             let Some(targets) = targets else {
                 self.kept_edges += 1;
                 for &vertex in inner {
-                    self.mesh.roles[vertex as usize] = Role::Fixed;
+                    let role = &mut self.mesh.roles[vertex as usize];
+                    if *role == Role::Chain {
+                        *role = Role::Fixed;
+                    }
                 }
                 continue;
             };
@@ -303,7 +383,10 @@ impl<'a> Run<'a> {
             }
             old.extend(inner);
             // The point where a closed chain begins is as good as any.
-            self.mesh.roles[chain[0] as usize] = Role::Fixed;
+            let first = &mut self.mesh.roles[chain[0] as usize];
+            if *first == Role::Chain {
+                *first = Role::Fixed;
+            }
         }
         self.collapse_along_chains(old);
     }

@@ -29,7 +29,7 @@ pub fn ours_from_surfaces(
     let outcome = subdiv::convert(&solid, &settings, &()).expect("a conversion within the limits");
     let stitched = brep::stitch(&outcome.fragments).expect("paired half-edges");
     let coarse = stitched.validate().expect("a manifold");
-    Some(brep::tessellate(&coarse, &solid, tolerance, fit)?.0)
+    Some(brep::tessellate(&coarse, &solid, tolerance, fit, brep::IfTroubled::Refine)?.0)
 }
 
 /// A B-Rep's triangles as a mesh.

@@ -35,10 +35,16 @@ pub(super) fn finer_faces(troubles: &[Trouble]) -> Vec<(usize, f64)> {
     faces
 }
 
+/// All facets, and to which face each belongs.
+pub(super) struct Facets {
+    pub(super) fragments: Fragments,
+    face_of: Vec<usize>,
+}
+
 impl Run<'_> {
     /// The boundary as triangles within `tolerance` of the surfaces, none of them through another,
     /// or what did not come out well.
-    pub(super) fn facets(&self, tolerance: f64) -> Result<Fragments, Vec<Trouble>> {
+    pub(super) fn facets(&self, tolerance: f64) -> Result<Facets, Vec<Trouble>> {
         let mut troubles = self.bad_facets(tolerance);
         let mut of_face: Vec<Vec<[u32; 3]>> = vec![Vec::new(); self.sheets.len()];
         for facet in self.mesh.facets() {
@@ -50,6 +56,9 @@ impl Run<'_> {
             let Sheet::Plane { normal, .. } = *self.sheets[face] else {
                 continue;
             };
+            if self.kept[face] {
+                continue;
+            }
             let outward = normal * self.plane_sense(loops, normal);
             match fill_loops(loops, &self.mesh.positions, outward) {
                 Ok(triangles) => of_face[face] = triangles,
@@ -67,8 +76,9 @@ impl Run<'_> {
         if !troubles.is_empty() {
             return Err(troubles);
         }
-        let mut triangles = Vec::new();
-        for (face, corners) in self.groups.faces.iter().zip(of_face) {
+        let (mut triangles, mut face_of) = (Vec::new(), Vec::new());
+        for (at, (face, corners)) in self.groups.faces.iter().zip(of_face).enumerate() {
+            face_of.extend(std::iter::repeat_n(at, corners.len()));
             triangles.extend(corners.into_iter().map(|vertices| Triangle {
                 vertices,
                 primitive: face.primitive,
@@ -76,17 +86,21 @@ impl Run<'_> {
                 material: face.material,
             }));
         }
-        Ok(Fragments {
+        let fragments = Fragments {
             kinds: vec![VertexKind::Interior; self.mesh.positions.len()],
             positions: self.mesh.positions.clone(),
             triangles,
-        })
+        };
+        Ok(Facets { fragments, face_of })
     }
 
     /// Facets that deviate too much, or stand across their surface.
     fn bad_facets(&self, tolerance: f64) -> Vec<Trouble> {
         let mut bad = Vec::new();
         for facet in self.mesh.facets() {
+            if self.kept[self.face_of(3 * facet)] {
+                continue;
+            }
             let shape = self.shape_of(3 * facet);
             let finer = if shape.error > 1.0 + 1e-9 || shape.lean > measure::UPRIGHT {
                 FINER
@@ -105,26 +119,24 @@ impl Run<'_> {
         bad
     }
 
-    /// Facets with a side that two others have, too: a chord across a planar face may be one
-    /// across its neighbour.
-    pub(super) fn doubled(&self, fragments: &Fragments) -> Vec<Trouble> {
-        let mut sides: Vec<([u32; 2], [u32; 3])> = (fragments.triangles.iter())
-            .flat_map(|t| {
-                let [a, b, c] = t.vertices;
-                [[a, b], [b, c], [c, a]].map(|side| (side, t.vertices))
-            })
+    /// Facets with a side that two others have, too: a chord across one face may be one across
+    /// its neighbour. Those in curved faces if there are
+    /// any, since they can be split.
+    pub(super) fn doubled(&self, facets: &Facets) -> Vec<Trouble> {
+        let sides_of = |[a, b, c]: [u32; 3]| [[a, b], [b, c], [c, a]];
+        let triangles = &facets.fragments.triangles;
+        let mut sides: Vec<[u32; 2]> = (triangles.iter())
+            .flat_map(|triangle| sides_of(triangle.vertices))
             .collect();
         sides.sort_unstable();
-        let twice = sides.windows(2).filter(|pair| pair[0].0 == pair[1].0);
-        let double: Vec<[u32; 2]> = twice.map(|pair| pair[0].0).collect();
+        let twice = sides.windows(2).filter(|pair| pair[0] == pair[1]);
+        let double: Vec<[u32; 2]> = twice.map(|pair| pair[0]).collect();
+        let is_double = |side: [u32; 2]| double.binary_search(&side).is_ok();
         let mut troubles = Vec::new();
         for facet in self.mesh.facets() {
-            if self.is_planar(3 * facet) {
-                continue;
-            }
             for h in 3 * facet..3 * facet + 3 {
                 let side = [self.mesh.origin[h as usize], self.mesh.target(h)];
-                if double.binary_search(&side).is_ok() && self.is_inner(h) {
+                if self.is_inner(h) && is_double(side) {
                     troubles.push(Trouble {
                         face: self.face_of(h),
                         corners: Some(self.mesh.corners(facet)),
@@ -133,6 +145,19 @@ impl Run<'_> {
                     });
                 }
             }
+        }
+        if troubles.is_empty() {
+            let of_triangles = triangles.iter().zip(&facets.face_of);
+            troubles = of_triangles
+                .filter(|(_, face)| !self.kept[**face])
+                .filter(|(triangle, _)| sides_of(triangle.vertices).into_iter().any(is_double))
+                .map(|(_, &face)| Trouble {
+                    face,
+                    corners: None,
+                    side: None,
+                    finer: FINER,
+                })
+                .collect();
         }
         troubles
     }
@@ -155,7 +180,10 @@ impl Run<'_> {
             side: None,
             finer: FINER,
         };
-        crossing.into_iter().map(trouble).collect()
+        // A pair of kept ones is one in the subdivision, too: below what is called a crossing there.
+        (crossing.into_iter().map(trouble))
+            .filter(|trouble| !self.kept[trouble.face])
+            .collect()
     }
 
     /// By face: the loops of planar ones, each with the face to its left.

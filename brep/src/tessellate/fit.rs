@@ -96,7 +96,8 @@ impl Run<'_> {
         let mut moved = Vec::new();
         for vertex in 0..super::index(self.mesh.positions.len()) {
             let first = self.mesh.outgoing[vertex as usize];
-            if first == NONE || self.mesh.roles[vertex as usize] == Role::Phantom {
+            let role = self.mesh.roles[vertex as usize];
+            if first == NONE || matches!(role, Role::Phantom | Role::Held) {
                 continue;
             }
             if let Some(to) = self.fitted(first, &weights, tolerance) {

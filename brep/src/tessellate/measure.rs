@@ -56,15 +56,22 @@ impl Run<'_> {
         self.mesh.face[half_edge as usize / 3] as usize
     }
 
-    pub(super) fn is_planar(&self, half_edge: u32) -> bool {
-        self.sheets[self.face_of(half_edge)].is_plane()
+    /// Whether a face is planar, so that it is known by its loops only.
+    pub(super) fn is_capped(&self, face: usize) -> bool {
+        self.sheets[face].is_plane() && !self.kept[face]
     }
 
-    /// Whether an edge lies inside a curved face.
+    pub(super) fn is_planar(&self, half_edge: u32) -> bool {
+        self.is_capped(self.face_of(half_edge))
+    }
+
+    /// Whether an edge lies inside a curved face whose facets may change.
     pub(super) fn is_inner(&self, h: u32) -> bool {
+        let face = self.face_of(h);
         self.mesh.origin[h as usize] != NONE
             && self.mesh.crease[h as usize] == NONE
-            && !self.is_planar(h)
+            && !self.kept[face]
+            && !self.sheets[face].is_plane()
     }
 
     /// A chord's deviation from the surface of a face, in units of the tolerance; never more than

@@ -38,9 +38,9 @@ impl Run<'_> {
     }
 
     fn boundary(&self, tolerance: f64) -> Result<Valid<Brep>, Vec<Trouble>> {
-        let fragments = self.facets(tolerance)?;
-        let brep = stitch(&fragments).map_err(|_| self.doubled(&fragments))?;
-        brep.validate().map_err(|_| self.doubled(&fragments))
+        let facets = self.facets(tolerance)?;
+        let brep = stitch(&facets.fragments).map_err(|_| self.doubled(&facets))?;
+        brep.validate().map_err(|_| self.doubled(&facets))
     }
 
     /// Splits the longest edge of each facet, and those edges of planar ones that are B-Rep
@@ -56,7 +56,7 @@ impl Run<'_> {
                 continue;
             }
             let sides = [[a, b], [b, c], [c, a]].map(|[p, q]| [p.min(q), p.max(q)]);
-            if self.sheets[trouble.face].is_plane() {
+            if self.is_capped(trouble.face) {
                 edges.extend(sides);
             } else {
                 let length = |[p, q]: &[u32; 2]| {

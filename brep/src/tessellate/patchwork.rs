@@ -23,6 +23,8 @@ pub(super) enum Role {
     Chain,
     /// It stays: a B-Rep vertex, or on an edge that cannot be traced.
     Fixed,
+    /// It does not even move: a corner in a face that keeps its facets.
+    Held,
     /// The middle of a planar loop's cap.
     Phantom,
 }
@@ -146,6 +148,17 @@ impl Patchwork {
             this.roles[numbers[vertex] as usize] = Role::Fixed;
         }
         (this, chains)
+    }
+
+    /// Holds all corners of faces that keep their facets.
+    pub(super) fn hold(&mut self, kept: &[bool]) {
+        for (corners, &face) in self.origin.chunks_exact(3).zip(&self.face) {
+            if kept[face as usize] {
+                for &corner in corners {
+                    self.roles[corner as usize] = Role::Held;
+                }
+            }
+        }
     }
 
     /// Joins the spokes of a fan whose facets begin at half-edge `start`, phantom last.

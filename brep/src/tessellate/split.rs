@@ -79,7 +79,7 @@ impl Run<'_> {
 
     fn push(&self, heap: &mut BinaryHeap<Candidate>, facet: u32) {
         let error = self.shape_of(3 * facet).error;
-        if error > 1.0 {
+        if error > 1.0 && !self.kept[self.face_of(3 * facet)] {
             let corners = self.mesh.corners(facet);
             heap.push(Candidate {
                 error,
@@ -103,6 +103,12 @@ impl Run<'_> {
         let [a, b] =
             [self.mesh.origin[h as usize], self.mesh.target(h)].map(|v| self.mesh.position(v));
         let middle = a.midpoint(b);
+        if [h, self.mesh.twin[h as usize]]
+            .iter()
+            .any(|&e| self.kept[self.face_of(e)])
+        {
+            return None;
+        }
         let crease = self.mesh.crease[h as usize];
         let (position, role) = if crease == NONE {
             let sheet = self.sheets[self.face_of(h)];

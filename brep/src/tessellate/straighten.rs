@@ -18,6 +18,7 @@ impl Run<'_> {
         for _ in 0..ROUNDS {
             let leaning: Vec<u32> = (self.mesh.facets())
                 .filter(|&facet| self.shape_of(3 * facet).lean > 0.0)
+                .filter(|&facet| !self.kept[self.face_of(3 * facet)])
                 .collect();
             let mut done = 0;
             for facet in &leaning {
