@@ -100,7 +100,7 @@ impl<'a> Sheet<'a> {
 
     /// Distance from the surface, signed, and the unit normal there (to the first order for
     /// implicit surfaces). The normal is zero where there is none.
-    #[inline(always)]
+    #[inline]
     pub(super) fn at(&self, p: DVec3) -> (f64, DVec3) {
         match *self {
             Self::Plane { normal, offset } => (normal.dot(p) - offset, normal),
