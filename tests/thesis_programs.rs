@@ -241,28 +241,78 @@ fn fixtures_are_saved_and_read_again() {
     }
 }
 
+/// The bytes of a linear approximation: a square across the y axis.
+fn square(material: i32, y: f64, half: f64) -> Vec<u8> {
+    let corners = [[-half, -half], [half, -half], [half, half], [-half, half]];
+    let mut bytes = b"A".to_vec();
+    for triangle in [[0, 1, 2], [0, 2, 3]] {
+        bytes.extend(material.to_be_bytes());
+        for [x, z] in triangle.map(|at: usize| corners[at]) {
+            bytes.extend([x, y, z].iter().flat_map(|c| c.to_be_bytes()));
+        }
+    }
+    bytes
+}
+
+/// A picture's width and pixels, row by row.
+fn decoded(png: &[u8]) -> (usize, Vec<[u8; 3]>) {
+    let mut reader = png::Decoder::new(std::io::Cursor::new(png))
+        .read_info()
+        .unwrap();
+    let mut buffer = vec![0; reader.output_buffer_size().unwrap()];
+    let width = reader.next_frame(&mut buffer).unwrap().width as usize;
+    (width, buffer.as_chunks().0.to_vec())
+}
+
+/// A square of side 2 half a unit in front of the origin, material 1, and one of side 8 three units
+/// behind it, material 2, from so far that both appear as large as they are: a pixel is 0.1 wide.
 #[test]
-fn pictures_are_drawn_over_each_other() {
-    let folder = files();
+fn several_files_share_a_depth_buffer_and_a_table_of_colours() {
+    let folder = tempfile::tempdir().unwrap();
     let folder = folder.path();
-    std::fs::write(folder.join("tabcor.dat"), "0 10 20 30\n1 200 0 0\n").unwrap();
+    let system = "0 0 0\n0 1 0\n1e6\n-5 -5 5 5\n";
+    std::fs::write(folder.join("sisproj.dat"), system).unwrap();
+    std::fs::write(folder.join("front.apl"), square(1, -0.5, 1.0)).unwrap();
+    std::fs::write(folder.join("back.apl"), square(2, 3.0, 4.0)).unwrap();
+    let picture = |options: &[&str]| {
+        let args = [&["thesis", "visual", "--size", "100x100"], options].concat();
+        let (width, pixels) = decoded(&out(folder, &args, b""));
+        assert_eq!((width, pixels.len()), (100, 10_000));
+        pixels
+    };
+    // The z axis in model units from the middle of the picture, which lies between two pixels.
+    let at = |pixels: &[[u8; 3]], x: i64, z: i64| {
+        pixels[usize::try_from((49 - z) * 100 + 50 + x).unwrap()]
+    };
+    let files = ["front.apl", "back.apl"];
+    let swapped = ["back.apl", "front.apl"];
+    let filled = picture(&[&files[..], &["--solid"]].concat());
+    assert_eq!(filled, picture(&[&swapped[..], &["--solid"]].concat()));
+    let (front, back) = (at(&filled, 3, 5), at(&filled, 20, 5));
+    assert_eq!((front, at(&filled, 45, 5)), ([255; 3], [0; 3]));
+    assert!(back != front && back != [0; 3], "{back:?}");
+
+    // The axes begin between the squares, and all of them is in front of the larger one.
+    let red = [230, 60, 60];
+    let solid_axes = picture(&[&files[..], &["--solid", "--axes"]].concat());
+    assert_eq!(at(&solid_axes, 5, -1), front);
+    assert_eq!(at(&solid_axes, 20, -1), red);
+    let wires = picture(&[&files[..], &["--axes"]].concat());
+    assert_eq!(at(&wires, 5, -1), red);
+    assert_eq!(at(&wires, 20, -1), red);
+    // Edges of the square behind are seen through the one in front; faces are not filled.
+    assert_eq!((at(&wires, 3, 5), at(&wires, 6, 6)), ([0; 3], back));
+
     std::fs::write(
-        folder.join("sisproj.dat"),
-        "0.3 0.3 0.3\n-1 1.5 -1\n5\n-1 -1 1 1\n",
+        folder.join("tabcor.dat"),
+        "0 10 20 30\n1 200 0 0\n2 0 99 0\n",
     )
     .unwrap();
-    for mode in [&["--axes"][..], &["--solid"]] {
-        let files = [
-            "thesis",
-            "visual",
-            "tetrahedron.apl",
-            "tetrahedron_little.apl",
-            "--size",
-            "64x48",
-        ];
-        let png = out(folder, &[files.as_slice(), mode].concat(), b"");
-        assert!(png.starts_with(b"\x89PNG"));
-        assert_eq!(png[16..24], [0, 0, 0, 64, 0, 0, 0, 48]);
+    for options in [&["--solid"][..], &["--solid", "--flat"]] {
+        let colored = picture(&[&files[..], options].concat());
+        assert_eq!(at(&colored, 3, 5), [200, 0, 0]);
+        assert_eq!(at(&colored, 20, 5), [0, 99, 0]);
+        assert_eq!(at(&colored, 45, 5), [10, 20, 30]);
     }
 }
 

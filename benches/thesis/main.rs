@@ -123,8 +123,8 @@ fn refinement() {
     for (level, then) in (0u8..22).zip(THEN).rev() {
         let (run, ms) = timed(&solid, Criterion::Rivlin, level);
         let [simplices, minimal, evaluations, optimum] = then;
-        let cells = run.found.cells.len() as u64;
-        let best = run.found.optimal_evaluations;
+        let cells = run.front;
+        let best = run.front_primitives;
         println!(
             "| {level} | {simplices} / {} | {minimal} / {cells} | {evaluations} / {} | {optimum} / {best} \
              | {} / {} | {} | {} / {} | {} / {} | {ms:.2} |",
@@ -155,19 +155,19 @@ fn spheres_table() {
     ];
     println!("\n**Table 6.4** spheres at level 18 by Rivlin's criterion, in one box\n");
     println!(
-        "| spheres | MAC | MAI | MAO | SSA | SSA/MAO 1992 | SSA/MAO | doubtful/MAO | values/MAO |"
+        "| spheres | MAC | MAI | MAO | SSA | SSA/MAO 1992 | SSA/MAO | primitives a simplex | values/MAO |"
     );
     println!("| --: | --: | --: | --: | --: | --: | --: | --: | --: |");
     for (count, then) in THEN {
         let run = adaptive(&spheres(count), Criterion::Rivlin, 18, Halt::Never);
-        let best = run.found.optimal_evaluations;
+        let best = run.front_primitives;
         println!(
             "| {count} | {} | {} | {best} | {} | {then:.2} | {} | {} | {} |",
             (6 << 18) * count,
-            run.found.cells.len() * count,
+            run.front * count as u64,
             run.classifications,
             ratio(run.classifications, best),
-            ratio(run.doubtful, best),
+            ratio(best, run.front),
             ratio(run.evaluations, best),
         );
     }
@@ -205,10 +205,7 @@ fn boxes() {
             let [classified, optimum, simplices, minimal] = then[at];
             println!(
                 "| {name} | {volume}V | {classified} / {} | {optimum} / {} | {simplices} / {} | {minimal} / {} | {ms:.2} |",
-                run.classifications,
-                run.found.optimal_evaluations,
-                run.simplices,
-                run.found.cells.len(),
+                run.classifications, run.front_primitives, run.simplices, run.front,
             );
         }
     }

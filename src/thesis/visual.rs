@@ -28,6 +28,9 @@ pub(crate) struct VisualArgs {
     /// Fill the faces, with hidden parts removed, instead of drawing their edges
     #[arg(long)]
     solid: bool,
+    /// Fill them with the table's colours as they are, without shades
+    #[arg(long, requires = "solid")]
+    flat: bool,
     /// Draw the axes: x red, y green, z blue
     #[arg(long)]
     axes: bool,
@@ -38,7 +41,8 @@ pub(crate) struct VisualArgs {
     /// everything]
     #[arg(long, value_name = "FILE")]
     projection: Option<PathBuf>,
-    /// The table of colours [default: tabcor.dat here or in the home folder, else white on black]
+    /// The table of colours [default: tabcor.dat here or in the home folder, else a hue for each
+    /// material on black]
     #[arg(long, value_name = "FILE")]
     colors: Option<PathBuf>,
 }
@@ -56,10 +60,10 @@ pub(crate) fn run(args: VisualArgs) -> Result<(), Failure> {
     let system = system.unwrap_or_else(|| everything(&pictures));
     let table = settings(args.colors, "tabcor.dat", colors::read)?;
     let table: Colors = table.unwrap_or_default();
-    let mode = if args.solid {
-        Mode::Solid
-    } else {
-        Mode::Wireframe
+    let mode = match (args.solid, args.flat) {
+        (false, _) => Mode::Wireframe,
+        (true, false) => Mode::Shaded,
+        (true, true) => Mode::Flat,
     };
     output::to_target(&target, |mut out| {
         let (width, height) = (args.size.width.get(), args.size.height.get());

@@ -10,12 +10,31 @@ pub struct Colors {
 }
 
 impl Default for Colors {
-    /// Without a file: a black background, everything else white.
+    /// Without a file: a black background, material 1 white, and hues that tell the others apart.
     fn default() -> Self {
         let mut entries = [[255; 3]; 256];
         entries[0] = [0; 3];
+        for (material, entry) in (0_u8..).zip(&mut entries).skip(2) {
+            *entry = hue(f64::from(material) * GOLDEN_TURN);
+        }
         Self { entries }
     }
+}
+
+/// Multiples of this part of a turn stay apart.
+const GOLDEN_TURN: f64 = 0.618_034;
+
+/// A light colour of this hue, in turns.
+#[expect(
+    clippy::cast_possible_truncation,
+    clippy::cast_sign_loss,
+    reason = "between 75 and 255"
+)]
+fn hue(turns: f64) -> [u8; 3] {
+    [0.0, 1.0, 2.0].map(|channel| {
+        let angle = std::f64::consts::TAU * (turns + channel / 3.0);
+        (165.0 + 90.0 * angle.cos()) as u8
+    })
 }
 
 impl Colors {

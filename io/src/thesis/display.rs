@@ -20,8 +20,10 @@ pub enum Mode {
     /// Edges of all triangles, hidden ones, too.
     #[default]
     Wireframe,
-    /// Triangles filled with the colour of their material, the nearest in front.
-    Solid,
+    /// Triangles filled with the colour of their material, the nearest in front (SÓLIDO).
+    Flat,
+    /// The same, darker the more a triangle turns away from the eye.
+    Shaded,
 }
 
 /// A picture in the making; several approximations may be drawn one over the other.
@@ -124,7 +126,8 @@ impl Display {
                         self.line(view[from], view[to], color);
                     }
                 }
-                Mode::Solid => self.fill(view, color),
+                Mode::Flat => self.fill(view, color),
+                Mode::Shaded => self.fill(view, shaded(view, color)),
             }
         }
     }
@@ -139,7 +142,7 @@ impl Display {
         }
     }
 
-    /// A line, one pixel wide, over everything.
+    /// A line, one pixel wide, where no filled triangle is nearer.
     fn line(&mut self, from: DVec3, to: DVec3, color: [u8; 3]) {
         let near = self.camera.nearest();
         let (mut a, mut b) = (from, to);
@@ -152,23 +155,30 @@ impl Display {
             b = cut(b, a, near);
         }
         let (a, b) = (self.camera.project(a), self.camera.project(b));
+        let (start, way) = (a, b - a);
         let Some((a, b)) = clip(a.truncate(), b.truncate(), self.camera.size) else {
             return;
         };
+        let length_squared = way.truncate().length_squared().max(f64::MIN_POSITIVE);
         let steps = (b - a).abs().max_element().ceil().max(1.0);
         for step in 0..=steps as u32 {
             let p = a.lerp(b, f64::from(step) / steps);
-            self.put(p.x.floor() as i64, p.y.floor() as i64, color);
+            // Reciprocal distances are linear in the picture.
+            let part = (p - start.truncate()).dot(way.truncate()) / length_squared;
+            let nearness = start.z + way.z * part;
+            self.put(p.x.floor() as i64, p.y.floor() as i64, nearness, color);
         }
     }
 
-    fn put(&mut self, x: i64, y: i64, color: [u8; 3]) {
+    fn put(&mut self, x: i64, y: i64, nearness: f64, color: [u8; 3]) {
         if let (Ok(x), Ok(y)) = (u32::try_from(x), u32::try_from(y))
             && x < self.width
             && y < self.height
         {
             let at = y as usize * self.width as usize + x as usize;
-            self.pixels[at] = color;
+            if nearness >= self.nearness[at] {
+                self.pixels[at] = color;
+            }
         }
     }
 
@@ -242,6 +252,17 @@ impl Display {
         writer.write_image_data(self.pixels.as_flattened())?;
         Ok(writer.finish()?)
     }
+}
+
+/// The light that stays on a triangle seen edge-on.
+const AMBIENT: f64 = 0.25;
+
+/// A colour in the light of a lamp at the eye; either side of a triangle is lit.
+fn shaded([a, b, c]: [DVec3; 3], color: [u8; 3]) -> [u8; 3] {
+    let normal = (b - a).cross(c - a).normalize_or_zero();
+    let sight = (a + b + c).normalize_or_zero();
+    let light = AMBIENT + (1.0 - AMBIENT) * normal.dot(sight).abs();
+    color.map(|channel| (f64::from(channel) * light).round() as u8)
 }
 
 /// Where the line from `p` to `q` reaches the depth `z`.

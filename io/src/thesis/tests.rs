@@ -161,7 +161,14 @@ fn text_files_come_back_and_complain_with_a_line() {
         error.to_string().starts_with("byte 12: line 2: "),
         "{error}"
     );
-    assert_eq!(Colors::default().of(7), [255; 3]);
+    // Without a table materials are told apart, and seen on the background.
+    let usual = Colors::default();
+    assert_eq!((usual.background(), usual.of(1)), ([0; 3], [255; 3]));
+    for material in 2..256 {
+        let color = usual.of(material);
+        assert!(color.iter().any(|c| *c > 150), "{material}: {color:?}");
+        assert!((1..material).all(|other| usual.of(other) != color));
+    }
 }
 
 /// Two squares across the line of sight, the smaller one in front; the eye is 10 away from the
@@ -187,8 +194,8 @@ fn the_nearest_surface_is_seen_where_projection_puts_it() {
     let table = colors::read("0 0 0 0\n1 10 0 0\n2 20 0 0").unwrap();
     let mut display = Display::new(80, 80, &system, &table).unwrap();
     // At y = −5 the half side 1 looks like 2; behind, at y = 10, 6 looks like 3.
-    display.draw(&square(-5.0, 1.0, 1), Mode::Solid, &table);
-    display.draw(&square(10.0, 6.0, 2), Mode::Solid, &table);
+    display.draw(&square(-5.0, 1.0, 1), Mode::Flat, &table);
+    display.draw(&square(10.0, 6.0, 2), Mode::Flat, &table);
     let row: Vec<u8> = (0..80).map(|x| display.pixel(x, 40).unwrap()[0]).collect();
     let expected: Vec<u8> = (0..80_i32)
         .map(|x| match (2 * x - 79).abs() {
@@ -198,6 +205,11 @@ fn the_nearest_surface_is_seen_where_projection_puts_it() {
         })
         .collect();
     assert_eq!(row, expected);
+    // The axes begin behind the first square, whose middle hides them; beside it they are seen.
+    let mut axes = display.clone();
+    axes.draw_axes(3.9);
+    assert_eq!(axes.pixel(45, 40), display.pixel(45, 40));
+    assert_ne!(axes.pixel(65, 40), display.pixel(65, 40));
     // A triangle through the eye's plane is cut, not turned around.
     let behind = [[-1.0, -30.0, 0.0], [1.0, -30.0, 0.0], [0.0, -20.0, 1.0]];
     let before = display.clone();
@@ -206,7 +218,7 @@ fn the_nearest_surface_is_seen_where_projection_puts_it() {
         corners: behind,
     };
     display.draw(&[face], Mode::Wireframe, &table);
-    display.draw(&[face], Mode::Solid, &table);
+    display.draw(&[face], Mode::Flat, &table);
     let same = (0..80).all(|x| display.pixel(x, 30) == before.pixel(x, 30));
     assert!(same);
 }

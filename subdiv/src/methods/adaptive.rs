@@ -26,6 +26,12 @@ pub enum Halt {
 pub struct Adaptive {
     /// What it found in its leaves.
     pub found: Found,
+    /// Leaves that the criterion leaves open, whether the boundary passes there or not ("Simp.
+    /// Inter.": the thesis' tables obey simplices(n + 1) = simplices(n) + 2·front(n)).
+    pub front: u64,
+    /// Primitives in the pruned formulas of those leaves ("Prim. Inter.", what the thesis calls
+    /// MAO; in the same way classifications(n + 1) = classifications(n) + 2·front_primitives(n)).
+    pub front_primitives: u64,
     /// Simplices made, the six roots included ("Tot. Simp.").
     pub simplices: u64,
     /// Primitives classified in simplices ("Class. Prim.", the evaluations of Tables 6.2–6.4).
@@ -148,6 +154,8 @@ impl Count {
             let value = value(inside, 4);
             self.judge.note(active.primitive as usize, value);
         }
+        self.done.front += 1;
+        self.done.front_primitives += frame.active.len() as u64;
         let primitives = self.judge.undecided(&frame.formula);
         if primitives > 0 {
             self.done.found.cells.push(cell(simplex));
