@@ -1,6 +1,7 @@
 //! The command line as it is typed. [`run`](crate::run) turns it into what the program uses.
 
 use crate::thesis::ThesisCommand;
+use crate::thesis::pipe::DialectArgs;
 use crate::values::{Bytes, PictureSize, Tolerance, Viewpoint};
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use clap_complete::Shell;
@@ -210,10 +211,8 @@ pub(crate) struct ModelArgs {
         help_heading = "Model"
     )]
     pub(crate) facet_limit: u32,
-    /// The bytes that stand for union, intersection and difference in the thesis' files, as in
-    /// 0,1,2
-    #[arg(long, value_name = "U,I,D", hide_short_help = true, help_heading = "Model", value_parser = crate::thesis::pipe::operators)]
-    pub(crate) operators: Option<io::thesis::tree::Operators>,
+    #[command(flatten)]
+    pub(crate) dialect: DialectArgs,
     /// Highest degree of a polynomial
     #[arg(
         long,
@@ -282,6 +281,8 @@ pub(crate) struct InfoArgs {
     pub(crate) json: bool,
     #[command(flatten)]
     pub(crate) clip: ClipArgs,
+    #[command(flatten)]
+    pub(crate) dialect: DialectArgs,
 }
 
 /// The part of space that counts.

@@ -81,7 +81,7 @@ fn convert(conversion: &Conversion, talk: Talk, report: &mut Report) -> Result<(
 fn write(conversion: &Conversion, boundary: &Boundary) -> Result<Vec<String>, Failure> {
     let mut remarks = Vec::new();
     for output in &conversion.outputs {
-        let remark = output::write(output, boundary, conversion.unit, conversion.job.operators)?;
+        let remark = output::write(output, boundary, conversion.unit, conversion.job.dialect)?;
         remarks.extend(remark.map(|text| format!("{}: {text}", output.target.name())));
     }
     Ok(remarks)

@@ -16,7 +16,7 @@ use surface::Description;
 /// Reads, and prints what was found on standard output.
 pub(crate) fn run(args: InfoArgs, talk: Talk) -> Result<(), Failure> {
     let input = Input::new(args.input);
-    let (solid, loaded) = input.solid(&args.clip, talk)?;
+    let (solid, loaded) = input.solid(&args.clip, args.dialect, talk)?;
     let nodes = loaded.model.nodes().len();
     let text = if args.json {
         let json = serde_json::to_string_pretty(&to_json(&solid, &input.name(), nodes));

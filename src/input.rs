@@ -5,11 +5,11 @@ use crate::failure::Failure;
 use crate::folder::Folder;
 use crate::run::clip_box;
 use crate::talk::Talk;
+use crate::thesis::pipe::DialectArgs;
 use csg::Solid;
 use io::read::format::{Format, sniff};
 use io::read::{Diagnostic, ReadOptions, Reading, decode, scad_csg};
-use io::thesis::solid::{self, MatrixForm};
-use io::thesis::tree::Operators;
+use io::thesis::solid;
 use std::io::Read as _;
 use std::path::{Path, PathBuf};
 
@@ -77,15 +77,21 @@ impl Input {
         &self,
         format: Option<InputFormat>,
         options: ReadOptions,
+        dialect: DialectArgs,
     ) -> Result<Loaded, Failure> {
         let (bytes, format) = self.open(format)?;
-        self.parse(bytes, format, options, Operators::default())
+        self.parse(bytes, format, options, dialect)
     }
 
     /// The solid of the model, and what it was read from; warnings are said.
-    pub(crate) fn solid(&self, clip: &ClipArgs, talk: Talk) -> Result<(Solid, Loaded), Failure> {
+    pub(crate) fn solid(
+        &self,
+        clip: &ClipArgs,
+        dialect: DialectArgs,
+        talk: Talk,
+    ) -> Result<(Solid, Loaded), Failure> {
         let clip = clip.corners.as_deref().map(clip_box).transpose()?;
-        let loaded = self.load(None, ReadOptions::default())?;
+        let loaded = self.load(None, ReadOptions::default(), dialect)?;
         for warning in &loaded.warnings {
             talk.warn_about(warning, &loaded.source);
         }
@@ -100,15 +106,15 @@ impl Input {
         bytes: Vec<u8>,
         format: Format,
         options: ReadOptions,
-        operators: Operators,
+        dialect: DialectArgs,
     ) -> Result<Loaded, Failure> {
         let name = self.name();
         match format {
             Format::ScadCsg => {}
             Format::ThesisCsg => {
-                let form = MatrixForm::Rows;
+                let form = dialect.form();
                 let wrong = |error| Failure::BadInput(format!("{name}: {error}"));
-                let tree = solid::read(&bytes, operators, form).map_err(wrong)?;
+                let tree = solid::read(&bytes, dialect.operators(), form).map_err(wrong)?;
                 return Ok(Loaded {
                     model: solid::to_model(&tree.value, form)?,
                     format,

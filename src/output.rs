@@ -4,12 +4,12 @@ use crate::args::OutputFormat;
 use crate::failure::Failure;
 use crate::pipeline::Boundary;
 use crate::run::{Output, Target};
+use crate::thesis::pipe::DialectArgs;
 use brep::{Brep, Shading};
 use csg::Material;
 use io::thesis::ByteOrder;
 use io::thesis::approximation::{self, Face};
 use io::thesis::solid;
-use io::thesis::tree::Operators;
 use io::thesis::wireframe::{self, Wireframe};
 use io::write::{Error, Unit, atomic, gltf, obj, ply, stl, threemf};
 use std::io::{BufWriter, Write};
@@ -21,7 +21,7 @@ pub(crate) fn write(
     output: &Output,
     boundary: &Boundary,
     unit: Option<Unit>,
-    operators: Operators,
+    dialect: DialectArgs,
 ) -> Result<Option<String>, Failure> {
     if output.format == OutputFormat::ThesisCsg && boundary.is_mesh {
         let text =
@@ -38,7 +38,7 @@ pub(crate) fn write(
     let reference = library.as_deref().and_then(Path::file_name);
     let reference = reference.map(|name| name.to_string_lossy().into_owned());
     to_target(&output.target, |out| {
-        remark = mesh(output.format, boundary, unit, reference, operators, out)?;
+        remark = mesh(output.format, boundary, unit, reference, dialect, out)?;
         Ok(())
     })?;
     if let Some(library) = library {
@@ -76,7 +76,7 @@ fn mesh(
     boundary: &Boundary,
     unit: Option<Unit>,
     material_library: Option<String>,
-    operators: Operators,
+    dialect: DialectArgs,
     mut out: &mut dyn Write,
 ) -> Result<Option<String>, Error> {
     let Boundary { brep, solid, .. } = boundary;
@@ -116,8 +116,8 @@ fn mesh(
             }
         }
         OutputFormat::ThesisCsg => {
-            let tree = solid::from_solid(&boundary.solid);
-            solid::write(&tree, operators, ByteOrder::Big, &mut out)?;
+            let tree = solid::from_solid(&boundary.solid, dialect.form());
+            solid::write(&tree, dialect.operators(), ByteOrder::Big, &mut out)?;
         }
         OutputFormat::Apl => approximation::write(faces(brep), ByteOrder::Big, &mut out)?,
         OutputFormat::Wfr => {

@@ -46,9 +46,8 @@ pub(crate) fn run(
         };
         return Ok(measured(boundary, progress, report));
     }
-    let operators = job.operators;
     let loaded = report.timed("reading", || {
-        job.input.parse(bytes, format, job.read, operators)
+        job.input.parse(bytes, format, job.read, job.dialect)
     })?;
     report.input.format = Some(loaded.format.name());
     progress.hidden_while(|| warn(&loaded, talk, report));

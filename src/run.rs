@@ -6,11 +6,11 @@ use crate::input::Input;
 use crate::memory;
 use crate::report::SettingsReport;
 use crate::streams::{Loop, find_loop};
+use crate::thesis::pipe::DialectArgs;
 use crate::values::Tolerance;
 use csg::Aabb;
 use glam::DVec3;
 use io::read::ReadOptions;
-use io::thesis::tree::Operators;
 use io::write::Unit;
 use std::path::{Path, PathBuf};
 
@@ -35,8 +35,8 @@ pub(crate) struct Output {
 pub(crate) struct Job {
     pub(crate) input: Input,
     pub(crate) read: ReadOptions,
-    /// Codes in the thesis' files.
-    pub(crate) operators: Operators,
+    /// How the thesis' files are read and written.
+    pub(crate) dialect: DialectArgs,
     pub(crate) clip: Option<Aabb>,
     pub(crate) precision: Precision,
     pub(crate) max_level: Option<u8>,
@@ -103,7 +103,7 @@ impl Job {
                 facet_limit: args.facet_limit,
                 max_degree: args.max_degree,
             },
-            operators: args.operators.unwrap_or_default(),
+            dialect: args.dialect,
             clip: args.clip.as_deref().map(clip_box).transpose()?,
             precision: match (args.level, args.tolerance.unwrap_or_default()) {
                 (Some(level), _) => Precision::Level(level),

@@ -14,18 +14,6 @@ use std::process::{Command, Output};
 
 const ROOT: &str = env!("CARGO_MANIFEST_DIR");
 
-/// The folder with the script's files.
-fn files() -> tempfile::TempDir {
-    let folder = tempfile::tempdir().unwrap();
-    let script = Path::new(ROOT).join("tests/python/thesis_files.py");
-    let made = Command::new(support::validators())
-        .arg(script)
-        .arg(folder.path())
-        .status();
-    assert!(made.unwrap().success());
-    folder
-}
-
 /// Runs the program in a folder, with bytes on standard input.
 fn run(folder: &Path, args: &[&str], stdin: &[u8]) -> Output {
     assert_cmd::cargo::cargo_bin_cmd!("csg2brep")
@@ -79,7 +67,7 @@ fn volume(folder: &Path, tree: &[u8]) -> [f64; 3] {
 
 #[test]
 fn files_assembled_by_hand_mean_what_the_thesis_says() {
-    let folder = files();
+    let folder = support::thesis_files();
     let folder = folder.path();
     for order in ["", "_little"] {
         let read = |name: &str, end: &str| {
@@ -125,7 +113,7 @@ fn files_assembled_by_hand_mean_what_the_thesis_says() {
 /// A ball of radius 2 without a unit block: 32π/3 − 1, and 16π + 6 (thesis programs throughout).
 #[test]
 fn a_pipeline_brackets_volume_and_area() {
-    let folder = files();
+    let folder = support::thesis_files();
     let folder = folder.path();
     let solid = std::fs::read(folder.join("bored.CSG")).unwrap();
     let boxed = ["csg2cspg", "-B", "-2", "-3", "-3", "4", "3", "3"];
@@ -178,7 +166,7 @@ fn the_box_limits_the_solid_unless_l_is_given() {
 
 #[test]
 fn options_mean_what_the_thesis_says() {
-    let folder = files();
+    let folder = support::thesis_files();
     let folder = folder.path();
     let sector = std::fs::read(folder.join("bored.CSG")).unwrap();
     let boxed = ["csg2cspg", "-B", "-2", "-3", "-3", "4", "3", "3"];
@@ -219,25 +207,26 @@ fn options_mean_what_the_thesis_says() {
     );
 }
 
-/// Any solid becomes a `.CSG` that means the same: volumes agree to the format's seven digits.
+/// A.2.5, A.3.2, A.6.2: all the letters.
 #[test]
-fn fixtures_are_saved_and_read_again() {
+fn helps_name_the_options_of_the_thesis() {
     let folder = tempfile::tempdir().unwrap();
-    let folder = folder.path();
-    for name in ["manchete", "atomo", "chupeta"] {
-        let path = format!("{ROOT}/fixtures/thesis/{name}.csg");
-        let file = format!("{name}.CSG");
-        out(folder, &[path.as_str(), "-o", &file, "--level", "6"], b"");
-        let volume = |input: &str| {
-            let report = out(folder, &[input, "--level", "18", "--report", "-"], b"");
-            let report: serde_json::Value = serde_json::from_slice(&report).unwrap();
-            report["volume"].as_f64().unwrap()
-        };
-        let (text, binary) = (volume(&path), volume(&file));
-        assert!(
-            (binary / text - 1.0).abs() < 1e-3,
-            "{name}: {text} {binary}"
-        );
+    let letters: [(&str, &[&str]); 3] = [
+        ("csg2cspg", &["-D", "-L", "-B"]),
+        ("subsimpl", &["-D", "-E", "-O", "-P", "-N", "-M", "-T"]),
+        ("propsimpl", &["-A", "-V"]),
+    ];
+    for (program, letters) in letters {
+        let help = out(folder.path(), &["thesis", program, "--help"], b"");
+        let help = String::from_utf8(help).unwrap();
+        for letter in letters {
+            let named = |line: &str| {
+                line.trim_start()
+                    .split([' ', ','])
+                    .any(|word| word == *letter)
+            };
+            assert!(help.lines().any(named), "{program}: {letter}");
+        }
     }
 }
 
@@ -319,7 +308,7 @@ fn several_files_share_a_depth_buffer_and_a_table_of_colours() {
 /// Each file has one thing wrong; the message names the byte.
 #[test]
 fn bad_files_are_refused_with_the_byte() {
-    let folder = files();
+    let folder = support::thesis_files();
     let folder = folder.path();
     let cases = [
         ("type.CSG", "byte 5: unknown type 42 of primitive"),
@@ -364,7 +353,7 @@ fn bad_files_are_refused_with_the_byte() {
 fn programs_that_read_what_they_write_are_refused() {
     use std::fs::{File, OpenOptions, read};
     use std::process::Stdio;
-    let folder = files();
+    let folder = support::thesis_files();
     let folder = folder.path();
     let start = |args: &[&str], stdin: Stdio, stdout: Stdio| {
         let mut command = Command::new(assert_cmd::cargo::cargo_bin!("csg2brep"));

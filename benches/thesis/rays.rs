@@ -1,5 +1,6 @@
 //! Section 6.4: rays through the bintree.
 
+use crate::reduction::chmutov;
 use crate::solids::read_fixture;
 use csg::Solid;
 use glam::DVec3;
@@ -26,14 +27,21 @@ pub(crate) fn table() {
         "thesis/chupeta",
     ] {
         let solid = Solid::build(&read_fixture(name), None).expect("a bounded fixture");
-        let degrees = solid.primitives.iter().map(|p| p.polynomial.degree());
-        let (hits, microseconds) = trace(&solid);
-        println!(
-            "| {name} | {} | {} | {hits} | {microseconds:.2} |",
-            solid.primitives.len(),
-            degrees.max().unwrap_or(0),
-        );
+        row(name, &solid);
     }
+    for degree in [10, 12, 14, 16, 20] {
+        row("Chmutov", &chmutov(degree));
+    }
+}
+
+fn row(name: &str, solid: &Solid) {
+    let degrees = solid.primitives.iter().map(|p| p.polynomial.degree());
+    let (hits, microseconds) = trace(solid);
+    println!(
+        "| {name} | {} | {} | {hits} | {microseconds:.2} |",
+        solid.primitives.len(),
+        degrees.max().unwrap_or(0),
+    );
 }
 
 fn trace(solid: &Solid) -> (usize, f64) {

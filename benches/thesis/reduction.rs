@@ -64,7 +64,7 @@ fn others(one: &Adaptive, other: &Adaptive) -> usize {
 }
 
 /// Tₙ(x) + Tₙ(y) + Tₙ(z) ≤ 0 in a cube a little larger than [−1, 1]³.
-fn chmutov(degree: usize) -> Solid {
+pub(crate) fn chmutov(degree: usize) -> Solid {
     let mut chebyshev = [vec![1.0], vec![0.0, 1.0]];
     for _ in 1..degree {
         let [before, last] = &chebyshev;

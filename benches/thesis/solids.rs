@@ -1,6 +1,6 @@
 //! The solids of the thesis, each in a box of a chosen size.
 
-use csg::{DomainFit, Model, Solid};
+use csg::{DomainFit, Formula, FormulaNode, Model, Solid};
 use glam::DVec3;
 use std::path::Path;
 
@@ -33,18 +33,21 @@ pub(crate) fn load_in(name: &str, times: f64) -> Solid {
     Solid::build_fitted(&model(name), None, fit).expect("a bounded fixture")
 }
 
-/// So many spheres in the box of 64; 128 have their own, since they are a ring.
+/// The first spheres of the 64, in the box of all of them; 128 have their own, since they are a
+/// ring.
 pub(crate) fn spheres(count: usize) -> Solid {
-    let name = |count| format!("spheres_{count:03}");
-    let alone = load(&name(count));
-    let largest = load(&name(64)).domain;
     if count > 64 {
-        return alone;
+        return load(&format!("spheres_{count:03}"));
     }
-    let extent = alone.extent;
-    let size = extent.max - extent.min;
-    let middle = (extent.max + extent.min) * 0.5;
-    let shift = 0.5 * largest.to_centered(middle);
-    let fit = DomainFit::new(largest.size() / size.max_element(), shift).expect("room");
-    Solid::build_fitted(&model(&name(count)), None, fit).expect("a bounded fixture")
+    let mut solid = load("spheres_064");
+    let literals = solid.formula.nodes().iter().copied();
+    let literals = literals.filter(|node| matches!(node, FormulaNode::Literal(_)));
+    let mut nodes: Vec<FormulaNode> = literals.take(count).collect();
+    solid.primitives.truncate(count);
+    if count > 1 {
+        let len = u32::try_from(count).expect("at most 64");
+        nodes.insert(0, FormulaNode::Union { len });
+    }
+    solid.formula = Formula::new(nodes).expect("a union of literals");
+    solid
 }

@@ -8,6 +8,7 @@ use crate::output;
 use crate::run::Target;
 use crate::summary::grouped;
 use crate::talk::Talk;
+use crate::thesis::pipe::DialectArgs;
 use clap::Args;
 use csg::Solid;
 use std::path::PathBuf;
@@ -41,12 +42,14 @@ pub(crate) struct CompareArgs {
     stop_at_planes: bool,
     #[command(flatten)]
     clip: ClipArgs,
+    #[command(flatten)]
+    dialect: DialectArgs,
 }
 
 /// Prints the table on standard output.
 pub(crate) fn run(args: CompareArgs, talk: Talk) -> Result<(), Failure> {
     let input = Input::new(args.input);
-    let (solid, _) = input.solid(&args.clip, talk)?;
+    let (solid, _) = input.solid(&args.clip, args.dialect, talk)?;
     let halt = if args.stop_at_planes {
         Halt::AtPlanes
     } else {

@@ -2,7 +2,7 @@
 //! six simplices of a box (thesis A.2).
 
 use super::half_spaces::HalfSpaces;
-use super::pipe::{Codes, Order, Pipe, read_input};
+use super::pipe::{DialectArgs, Order, Pipe, read_input};
 use crate::failure::Failure;
 use crate::run::clip_box;
 use crate::talk::Talk;
@@ -33,13 +33,10 @@ pub(crate) struct Csg2CspgArgs {
         value_names = ["XMIN", "YMIN", "ZMIN", "XMAX", "YMAX", "ZMAX"]
     )]
     bounds: Option<Vec<f64>>,
-    /// The matrices of the instances multiply column vectors
-    #[arg(long)]
-    columns: bool,
     #[command(flatten)]
     pipe: Pipe,
     #[command(flatten)]
-    codes: Codes,
+    dialect: DialectArgs,
     #[command(flatten)]
     order: Order,
 }
@@ -55,13 +52,9 @@ pub(crate) fn run(args: Csg2CspgArgs, talk: Talk) -> Result<(), Failure> {
             max: DVec3::splat(5.0),
         },
     };
-    let form = if args.columns {
-        MatrixForm::Columns
-    } else {
-        MatrixForm::Rows
-    };
+    let form = args.dialect.form();
     let target = args.pipe.target()?;
-    let operators = args.codes.operators();
+    let operators = args.dialect.operators();
     let (name, tree) = read_input(&args.pipe.input, |bytes| {
         solid::read(bytes, operators, form)
     })?;

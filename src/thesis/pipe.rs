@@ -5,6 +5,7 @@ use crate::failure::Failure;
 use crate::input::Input;
 use crate::run::{Target, check_targets};
 use clap::Args;
+use io::thesis::solid::MatrixForm;
 use io::thesis::tree::Operators;
 use io::thesis::{ByteOrder, Decoded, Error};
 use std::path::PathBuf;
@@ -43,6 +44,32 @@ impl Codes {
     }
 }
 
+/// What a `.CSG` file leaves open.
+#[derive(Args, Clone, Copy, Debug, Default)]
+pub(crate) struct DialectArgs {
+    /// The bytes that stand for union, intersection and difference in the thesis' files, as in
+    /// 0,1,2
+    #[arg(long, value_name = "U,I,D", hide_short_help = true, help_heading = "Model", value_parser = operators)]
+    operators: Option<Operators>,
+    /// The matrices in the thesis' .CSG files multiply column vectors
+    #[arg(long, hide_short_help = true, help_heading = "Model")]
+    columns: bool,
+}
+
+impl DialectArgs {
+    pub(crate) fn operators(self) -> Operators {
+        self.operators.unwrap_or_default()
+    }
+
+    pub(crate) fn form(self) -> MatrixForm {
+        if self.columns {
+            MatrixForm::Columns
+        } else {
+            MatrixForm::Rows
+        }
+    }
+}
+
 /// Order of bytes in binary files.
 #[derive(Args, Debug)]
 pub(super) struct Order {
@@ -62,7 +89,7 @@ impl Order {
 }
 
 /// Three different bytes, separated by commas.
-pub(crate) fn operators(text: &str) -> Result<Operators, String> {
+fn operators(text: &str) -> Result<Operators, String> {
     let numbers: Result<Vec<u8>, _> = text.split(',').map(str::parse).collect();
     let codes: Option<[u8; 3]> = numbers.ok().and_then(|list| list.try_into().ok());
     let wrong = "expected three different numbers from 0 to 255, as in 0,1,2";

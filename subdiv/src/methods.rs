@@ -15,6 +15,7 @@ mod adaptive;
 mod complete;
 mod continuation;
 mod cube;
+mod paths;
 mod reduction;
 mod signs;
 
@@ -22,6 +23,7 @@ pub use adaptive::{Adaptive, Halt, adaptive, adaptive_reduced};
 pub use complete::{Complete, complete};
 pub use continuation::{Continuation, continuation};
 pub use cube::{CubeCut, Pattern};
+pub use paths::{Geometry, Paths};
 
 /// The conversion to Bernstein form that Table 6.1 times: coefficients of one primitive on the six
 /// root simplices.

@@ -105,6 +105,10 @@ for name, order in [("", ">"), ("_little", "<")]:
     for file, content in files.items():
         (FOLDER / file).write_bytes(content)
 
+# A block alone: its type, 0, is the same in either byte order.
+for name, order in [("", ">"), ("_little", "<")]:
+    (FOLDER / f"block{name}.CSG").write_bytes(leaf(order, 2, 0, moved(3, 1, 2, -1)))
+
 # What is wrong, each with the byte at which it is.
 ball = leaf(">", 1, 1, IDENTITY)
 wrong = {

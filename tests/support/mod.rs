@@ -87,6 +87,19 @@ pub(crate) fn file_reports<P: AsRef<Path>>(paths: &[P]) -> Vec<FileReport> {
     serde_json::from_slice(&output.stdout).expect("the validators print JSON")
 }
 
+/// A folder with the thesis' files as `tests/python/thesis_files.py` assembles them, sound and
+/// broken ones.
+pub(crate) fn thesis_files() -> tempfile::TempDir {
+    let folder = tempfile::tempdir().expect("a folder");
+    let script = Path::new(ROOT).join("tests/python/thesis_files.py");
+    let mut command = Command::new(validators());
+    run(
+        command.arg(script).arg(folder.path()),
+        "the thesis' files cannot be written",
+    );
+    folder
+}
+
 /// Path of a Python interpreter that has the packages of `tests/python/requirements.txt`.
 ///
 /// Makes the environment when it is missing or was made for other requirements; of several test

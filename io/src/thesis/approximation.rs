@@ -1,7 +1,7 @@
 //! The piecewise linear approximation of a boundary: `.apl`, the letter `A` and then triangles
 //! until the end of the file, each a material and three points in model units (thesis A.3.3.1).
 
-use super::bytes::{Cursor, Encoder, in_either_order};
+use super::bytes::{Cursor, Encoder, in_either_order, is_ordinary};
 use super::{ByteOrder, Decoded, Error, Problem};
 use std::io::Write;
 
@@ -40,8 +40,8 @@ fn faces(cursor: &mut Cursor<'_>, plausible: bool) -> Result<Vec<Face>, Error> {
         let start = *cursor;
         let material = cursor.int("a face's material")?;
         let corners = cursor.points("a face's corner")?;
-        let ordinary = |x: &f64| *x == 0.0 || (1e-30..1e30).contains(&x.abs());
-        if !(0..1 << 16).contains(&material) || plausible && !corners.iter().flatten().all(ordinary)
+        if !(0..1 << 16).contains(&material)
+            || plausible && !corners.iter().flatten().all(|x| is_ordinary(*x))
         {
             return Err(start.error(Problem::Code {
                 what: "material",

@@ -71,6 +71,7 @@ impl Cursor<'_> {
         Error {
             offset: self.at,
             problem,
+            little_endian: self.order == ByteOrder::Little,
         }
     }
 
@@ -98,24 +99,31 @@ impl Cursor<'_> {
 
     /// A finite `float`.
     pub(super) fn float(&mut self, what: &'static str) -> Result<f32, Error> {
-        let offset = self.at;
+        let start = *self;
         let bytes = self.take(what)?;
         let value = match self.order {
             ByteOrder::Big => f32::from_be_bytes(bytes),
             ByteOrder::Little => f32::from_le_bytes(bytes),
         };
-        finite(what, value.into(), offset).map(|_| value)
+        start.finite(what, value.into()).map(|_| value)
     }
 
     /// A finite `double`.
     pub(super) fn double(&mut self, what: &'static str) -> Result<f64, Error> {
-        let offset = self.at;
+        let start = *self;
         let bytes = self.take(what)?;
         let value = match self.order {
             ByteOrder::Big => f64::from_be_bytes(bytes),
             ByteOrder::Little => f64::from_le_bytes(bytes),
         };
-        finite(what, value, offset)
+        start.finite(what, value)
+    }
+
+    fn finite(&self, what: &'static str, value: f64) -> Result<f64, Error> {
+        if value.is_finite() {
+            return Ok(value);
+        }
+        Err(self.error(Problem::NotFinite { what, value }))
     }
 
     /// Points, three doubles each.
@@ -183,12 +191,9 @@ impl Cursor<'_> {
     }
 }
 
-fn finite(what: &'static str, value: f64, offset: usize) -> Result<f64, Error> {
-    if value.is_finite() {
-        return Ok(value);
-    }
-    let problem = Problem::NotFinite { what, value };
-    Err(Error { offset, problem })
+/// Whether a number looks like one that somebody wrote: read in the wrong order, few do.
+pub(super) fn is_ordinary(value: f64) -> bool {
+    value == 0.0 || (1e-30..1e30).contains(&value.abs())
 }
 
 /// Writes numbers in one byte order.

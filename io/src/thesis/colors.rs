@@ -14,8 +14,8 @@ impl Default for Colors {
     fn default() -> Self {
         let mut entries = [[255; 3]; 256];
         entries[0] = [0; 3];
-        for (material, entry) in (0_u8..).zip(&mut entries).skip(2) {
-            *entry = hue(f64::from(material) * GOLDEN_TURN);
+        for (material, entry) in entries.iter_mut().enumerate().skip(2) {
+            *entry = hue(material as f64 * GOLDEN_TURN);
         }
         Self { entries }
     }

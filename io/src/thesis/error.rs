@@ -2,14 +2,17 @@
 
 /// A file that cannot be read.
 ///
-/// Displays as `byte 12: unknown type 42 of primitive (known: 0 to 7)`.
+/// Displays as `byte 12: unknown type 42 of primitive (known: 0 to 7)`. Where numbers make more
+/// sense little-endian, it says that they were read so.
 #[derive(Clone, PartialEq, Debug, thiserror::Error)]
-#[error("byte {offset}: {problem}")]
+#[error("byte {offset}: {problem}{}", if *.little_endian { "; numbers were read little-endian, big-endian they make sense less far" } else { "" })]
 pub struct Error {
     /// Where in the file, from 0.
     pub offset: usize,
     /// What is wrong there.
     pub problem: Problem,
+    /// Whether numbers were read little-endian.
+    pub little_endian: bool,
 }
 
 /// What is wrong at a place in a file.

@@ -5,7 +5,7 @@
 //! HELICÓIDE stand between z = 0 and z = 1, BLOCO is the unit cube in the first octant, and the
 //! matrix multiplies row vectors, with the translation in its last row.
 
-use super::bytes::{Cursor, Encoder, in_either_order};
+use super::bytes::{Cursor, Encoder, in_either_order, is_ordinary};
 use super::tree::{Operation, Operators, Tree, TreeNode};
 use super::{ByteOrder, Decoded, Error, Problem};
 use csg::{
@@ -97,6 +97,9 @@ impl Instance {
 
 /// Reads a solid; shapes and matrices are checked, too.
 ///
+/// Type 0, BLOCO, does not tell the byte order: of two possible readings the one is taken whose
+/// numbers look as if somebody wrote them, big-endian if both do.
+///
 /// # Errors
 /// The first thing that is wrong, with its place.
 pub fn read(
@@ -104,12 +107,20 @@ pub fn read(
     operators: Operators,
     form: MatrixForm,
 ) -> Result<Decoded<Tree<Instance>>, Error> {
-    in_either_order(bytes, |cursor| {
-        Tree::read(cursor, operators, |c| read_instance(c, form))
-    })
+    let tree = |plausible| {
+        in_either_order(bytes, |cursor| {
+            Tree::read(cursor, operators, |c| read_instance(c, form, plausible))
+        })
+    };
+    // Strange numbers are legal all the same.
+    tree(true).or_else(|_| tree(false))
 }
 
-fn read_instance(cursor: &mut Cursor<'_>, form: MatrixForm) -> Result<Instance, Error> {
+fn read_instance(
+    cursor: &mut Cursor<'_>,
+    form: MatrixForm,
+    plausible: bool,
+) -> Result<Instance, Error> {
     let material = cursor.int("a material")?;
     let start = *cursor;
     let shape = match cursor.int("a type of primitive")? {
@@ -138,7 +149,13 @@ fn read_instance(cursor: &mut Cursor<'_>, form: MatrixForm) -> Result<Instance, 
     let at_matrix = *cursor;
     let mut matrix = [[0.0; 4]; 4];
     for entry in matrix.iter_mut().flatten() {
+        let before = *cursor;
         *entry = cursor.float("an entry of a matrix")?;
+        let value = f64::from(*entry);
+        if plausible && !is_ordinary(value) {
+            let what = "an entry of a matrix";
+            return Err(before.error(Problem::NotFinite { what, value }));
+        }
     }
     let instance = Instance {
         material,
@@ -259,15 +276,19 @@ pub fn material_color(material: i32) -> Option<[f32; 4]> {
     clippy::cast_possible_truncation,
     reason = "the format has 32-bit numbers; coefficients are at most 1, and a matrix out of range is refused by readers"
 )]
-pub fn from_solid(solid: &Solid) -> Tree<Instance> {
+pub fn from_solid(solid: &Solid, form: MatrixForm) -> Tree<Instance> {
     let half = solid.domain.half_size() as f32;
     let [x, y, z] = solid.domain.center().to_array().map(|c| c as f32);
-    let matrix = [
+    let rows = [
         [half, 0.0, 0.0, 0.0],
         [0.0, half, 0.0, 0.0],
         [0.0, 0.0, half, 0.0],
         [x, y, z, 1.0],
     ];
+    let matrix = match form {
+        MatrixForm::Rows => rows,
+        MatrixForm::Columns => std::array::from_fn(|i| rows.map(|row| row[i])),
+    };
     let leaf = |material, degree, coefficients| Instance {
         material,
         shape: Kind::Polynomial {

@@ -19,6 +19,7 @@ impl Word<'_> {
                 expected,
                 found: self.text.chars().take(40).collect(),
             },
+            little_endian: false,
         }
     }
 

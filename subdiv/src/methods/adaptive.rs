@@ -190,7 +190,7 @@ impl Count {
     }
 }
 
-fn cell(simplex: &Simplex) -> Cell {
+pub(super) fn cell(simplex: &Simplex) -> Cell {
     let mut cell = simplex.vertices.map(crate::lattice::Point::coordinates);
     cell.sort_unstable();
     cell

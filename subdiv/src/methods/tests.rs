@@ -48,6 +48,33 @@ fn all_methods_find_the_same_simplices() {
 }
 
 /// What the thesis says of its weakness: one seed finds one component.
+/// Paths lead where the subdivision was, in both ways to follow them.
+#[test]
+fn paths_lead_to_the_simplices_that_stay_open() {
+    let solid = two_parts();
+    for level in [0, 1, 11, 12] {
+        let paths = Paths::new(&solid, Criterion::Bezier, level);
+        let run = adaptive(&solid, Criterion::Bezier, level, Halt::Never);
+        assert_eq!(paths.len() as u64, run.front);
+        let found = |geometry| {
+            let mut cells = Vec::new();
+            paths.for_each(geometry, |cell| cells.push(cell));
+            cells.sort_unstable();
+            cells
+        };
+        let cells = found(Geometry::FromPaths);
+        assert_eq!(found(Geometry::Carried), cells);
+        // Those that the boundary crosses, by the signs at their vertices, are among them.
+        assert!(
+            run.found
+                .cells
+                .iter()
+                .all(|cell| cells.binary_search(cell).is_ok())
+        );
+        assert!(cells.windows(2).all(|pair| pair[0] != pair[1]));
+    }
+}
+
 #[test]
 fn continuation_needs_a_seed_for_each_component() {
     let solid = two_parts();
