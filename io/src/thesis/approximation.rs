@@ -1,7 +1,7 @@
 //! The piecewise linear approximation of a boundary: `.apl`, the letter `A` and then triangles
 //! until the end of the file, each a material and three points in model units (thesis A.3.3.1).
 
-use super::bytes::{Cursor, Encoder, in_either_order, is_ordinary};
+use super::bytes::{Cursor, Encoder, further, in_either_order, is_ordinary};
 use super::{ByteOrder, Decoded, Error, Problem};
 use std::io::Write;
 
@@ -28,9 +28,9 @@ pub struct Face {
 /// # Errors
 /// The first thing that is wrong, with its place.
 pub fn read(bytes: &[u8]) -> Result<Decoded<Vec<Face>>, Error> {
-    let strict = in_either_order(bytes, |cursor| faces(cursor, true));
+    let read = |plausible| in_either_order(bytes, |cursor| faces(cursor, plausible));
     // Strange numbers are legal all the same.
-    strict.or_else(|_| in_either_order(bytes, |cursor| faces(cursor, false)))
+    read(true).or_else(|strict| read(false).map_err(|error| further(strict, error)))
 }
 
 fn faces(cursor: &mut Cursor<'_>, plausible: bool) -> Result<Vec<Face>, Error> {
@@ -38,16 +38,20 @@ fn faces(cursor: &mut Cursor<'_>, plausible: bool) -> Result<Vec<Face>, Error> {
     let mut faces = Vec::with_capacity(cursor.left() / SIZE);
     while cursor.left() > 0 {
         let start = *cursor;
-        let material = cursor.int("a face's material")?;
-        let corners = cursor.points("a face's corner")?;
-        if !(0..1 << 16).contains(&material)
-            || plausible && !corners.iter().flatten().all(|x| is_ordinary(*x))
-        {
-            return Err(start.error(Problem::Code {
+        let wrong = |code| {
+            Err(start.error(Problem::Code {
                 what: "material",
-                code: material,
+                code,
                 known: "0 to 65535",
-            }));
+            }))
+        };
+        let material = cursor.int("a face's material")?;
+        if !(0..1 << 16).contains(&material) {
+            return wrong(material);
+        }
+        let corners = cursor.points("a face's corner")?;
+        if plausible && !corners.iter().flatten().all(|x| is_ordinary(*x)) {
+            return wrong(material);
         }
         faces.push(Face { material, corners });
     }

@@ -49,15 +49,24 @@ pub(super) fn in_either_order<T>(
             count => Err(cursor.error(Problem::Trailing { count })),
         }
     };
-    attempt(ByteOrder::Big).or_else(|big| {
-        attempt(ByteOrder::Little).map_err(|little| {
-            if little.offset > big.offset {
-                little
-            } else {
-                big
-            }
-        })
-    })
+    attempt(ByteOrder::Big)
+        .or_else(|big| attempt(ByteOrder::Little).map_err(|little| further(big, little)))
+}
+
+/// Of two failures to read one file the one that came later; of counts in one place the smaller
+/// one, else the first.
+pub(super) fn further(first: Error, second: Error) -> Error {
+    let is_smaller = match (&first.problem, &second.problem) {
+        (Problem::Count { count: one, .. }, Problem::Count { count: other, .. }) => {
+            first.offset == second.offset && other.cast_unsigned() < one.cast_unsigned()
+        }
+        _ => false,
+    };
+    if second.offset > first.offset || is_smaller {
+        second
+    } else {
+        first
+    }
 }
 
 impl Cursor<'_> {

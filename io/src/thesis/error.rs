@@ -5,7 +5,7 @@
 /// Displays as `byte 12: unknown type 42 of primitive (known: 0 to 7)`. Where numbers make more
 /// sense little-endian, it says that they were read so.
 #[derive(Clone, PartialEq, Debug, thiserror::Error)]
-#[error("byte {offset}: {problem}{}", if *.little_endian { "; numbers were read little-endian, big-endian they make sense less far" } else { "" })]
+#[error("byte {offset}: {problem}{}", if *.little_endian { " (numbers read little-endian, which makes more sense of them)" } else { "" })]
 pub struct Error {
     /// Where in the file, from 0.
     pub offset: usize,

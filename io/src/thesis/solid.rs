@@ -5,7 +5,7 @@
 //! HELICÓIDE stand between z = 0 and z = 1, BLOCO is the unit cube in the first octant, and the
 //! matrix multiplies row vectors, with the translation in its last row.
 
-use super::bytes::{Cursor, Encoder, in_either_order, is_ordinary};
+use super::bytes::{Cursor, Encoder, further, in_either_order, is_ordinary};
 use super::tree::{Operation, Operators, Tree, TreeNode};
 use super::{ByteOrder, Decoded, Error, Problem};
 use csg::{
@@ -113,7 +113,7 @@ pub fn read(
         })
     };
     // Strange numbers are legal all the same.
-    tree(true).or_else(|_| tree(false))
+    tree(true).or_else(|strict| tree(false).map_err(|error| further(strict, error)))
 }
 
 fn read_instance(
