@@ -13,7 +13,7 @@ fn quoted(text: &str) -> impl Iterator<Item = &str> {
 }
 
 fn is_source(word: &str) -> bool {
-    word.contains('/') && word.ends_with(".rs")
+    word.contains('/') && Path::new(word).extension().is_some_and(|end| end == "rs")
 }
 
 /// Rows of the table of algorithms: the files and the names.

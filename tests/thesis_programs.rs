@@ -12,8 +12,6 @@ use std::f64::consts::PI;
 use std::path::Path;
 use std::process::{Command, Output};
 
-const ROOT: &str = env!("CARGO_MANIFEST_DIR");
-
 /// Runs the program in a folder, with bytes on standard input.
 fn run(folder: &Path, args: &[&str], stdin: &[u8]) -> Output {
     assert_cmd::cargo::cargo_bin_cmd!("csg2brep")
