@@ -116,7 +116,7 @@ fn quadrics_and_tori_look_as_their_meshes() {
 #[test]
 fn many_parts_look_as_their_meshes() {
     agree("solids/S2_demo.csg", &[View::Back]);
-    agree("thesis/spheres_064.csg", &[View::Isometric]);
+    agree("solids/S4_64_spheres.csg", &[View::Isometric]);
     agree("third_party/openscad/example001.csg", &[View::Bottom]);
 }
 
