@@ -395,8 +395,12 @@ pub(crate) enum InputFormat {
     Csg,
     /// Binary Boolean tree of the thesis, .CSG
     ThesisCsg,
+    /// Half-spaces of the thesis in Bézier form
+    Cspg,
     /// Triangles of the thesis, stitched again
     Apl,
+    /// Mesh of the thesis' renderer, stitched again
+    Wfr,
 }
 
 /// Formats that can be written.
@@ -415,6 +419,8 @@ pub(crate) enum OutputFormat {
     Ply,
     /// Binary Boolean tree of the thesis, .CSG: the solid itself, not its mesh
     ThesisCsg,
+    /// Half-spaces of the thesis in Bézier form: the solid itself, not its mesh
+    Cspg,
     /// Triangles of the thesis
     Apl,
     /// Mesh of the thesis' renderer

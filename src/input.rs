@@ -9,7 +9,7 @@ use crate::thesis::pipe::DialectArgs;
 use csg::Solid;
 use io::read::format::{Format, sniff};
 use io::read::{Diagnostic, ReadOptions, Reading, decode, scad_csg};
-use io::thesis::solid;
+use io::thesis::{power_form, sectors, solid};
 use std::io::Read as _;
 use std::path::{Path, PathBuf};
 
@@ -60,7 +60,9 @@ impl Input {
         let format = match format {
             Some(InputFormat::Csg) => Format::ScadCsg,
             Some(InputFormat::ThesisCsg) => Format::ThesisCsg,
+            Some(InputFormat::Cspg) => Format::ThesisCspg,
             Some(InputFormat::Apl) => Format::ThesisApl,
+            Some(InputFormat::Wfr) => Format::ThesisWfr,
             None => match sniff(&bytes, &name) {
                 Ok(format) => format,
                 Err(unreadable) => {
@@ -122,7 +124,19 @@ impl Input {
                     warnings: Vec::new(),
                 });
             }
-            Format::ThesisApl => {
+            Format::ThesisCspg => {
+                let wrong = |error: String| Failure::BadInput(format!("{name}: {error}"));
+                let read = sectors::read(&bytes, dialect.operators());
+                let read = read.map_err(|error| wrong(error.to_string()))?;
+                let model = power_form::to_model(&read.value);
+                return Ok(Loaded {
+                    model: model.map_err(|problem| wrong(problem.to_string()))?,
+                    format,
+                    source: String::new(),
+                    warnings: Vec::new(),
+                });
+            }
+            Format::ThesisApl | Format::ThesisWfr => {
                 let text = "a linear approximation is a boundary already, not a CSG model (convert \
                             it, as in csg2brep IN -o part.glb)";
                 return Err(Failure::BadInput(format!("{name}: {text}")));

@@ -1,22 +1,26 @@
-//! From a linear approximation of the thesis to fragments, by the positions of its corners.
+//! From triangles or a mesh of the thesis to fragments, by the positions of their corners.
 
 use crate::failure::Failure;
 use crate::run::Job;
 use csg::{Aabb, Domain, Formula, FormulaNode, Material, MaterialId, PrimitiveId, Sense, Solid};
 use glam::DVec3;
-use io::thesis::approximation;
+use io::read::format::Format;
 use io::thesis::solid::material_color;
+use io::thesis::{approximation, wireframe};
 use subdiv::{Fragments, Triangle};
 
 /// Reads and welds; also what takes the place of the solid, which has materials only.
-pub(crate) fn read(job: &Job, bytes: &[u8]) -> Result<(Fragments, Solid), Failure> {
+pub(crate) fn read(job: &Job, bytes: &[u8], format: Format) -> Result<(Fragments, Solid), Failure> {
     let name = job.input.name();
     let wrong = |text: String| Failure::BadInput(format!("{name}: {text}"));
     if job.clip.is_some() {
         return Err(Failure::Usage("--box: a mesh cannot be clipped".to_owned()));
     }
-    let faces = approximation::read(bytes).map_err(|error| wrong(error.to_string()))?;
-    let faces = faces.value;
+    let faces = match format {
+        Format::ThesisWfr => wireframe::read(bytes).map(|mesh| mesh.value.triangles()),
+        _ => approximation::read(bytes).map(|faces| faces.value),
+    };
+    let faces = faces.map_err(|error| wrong(error.to_string()))?;
     let mut materials: Vec<i32> = faces.iter().map(|face| face.material).collect();
     materials.sort_unstable();
     materials.dedup();

@@ -4,11 +4,13 @@ use crate::args::OutputFormat;
 use crate::failure::Failure;
 use crate::pipeline::Boundary;
 use crate::run::{Output, Target};
+use crate::thesis::csg2cspg::sectors_of;
 use crate::thesis::pipe::DialectArgs;
 use brep::{Brep, Shading};
 use csg::Material;
 use io::thesis::ByteOrder;
 use io::thesis::approximation::{self, Face};
+use io::thesis::sectors;
 use io::thesis::solid;
 use io::thesis::wireframe::{self, Wireframe};
 use io::write::{Error, Unit, atomic, gltf, obj, ply, stl, threemf};
@@ -23,7 +25,8 @@ pub(crate) fn write(
     unit: Option<Unit>,
     dialect: DialectArgs,
 ) -> Result<Option<String>, Failure> {
-    if output.format == OutputFormat::ThesisCsg && boundary.is_mesh {
+    let is_solid = matches!(output.format, OutputFormat::ThesisCsg | OutputFormat::Cspg);
+    if is_solid && boundary.is_mesh {
         let text =
             "the input is a mesh, which has lost its set operations: only a mesh can be written";
         return Err(Failure::BadInput(text.to_owned()));
@@ -118,6 +121,10 @@ fn mesh(
         OutputFormat::ThesisCsg => {
             let tree = solid::from_solid(&boundary.solid, dialect.form());
             solid::write(&tree, dialect.operators(), ByteOrder::Big, &mut out)?;
+        }
+        OutputFormat::Cspg => {
+            let sectors = sectors_of(&boundary.solid);
+            sectors::write(&sectors, dialect.operators(), ByteOrder::Big, &mut out)?;
         }
         OutputFormat::Apl => approximation::write(faces(brep), ByteOrder::Big, &mut out)?,
         OutputFormat::Wfr => {

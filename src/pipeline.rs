@@ -33,9 +33,9 @@ pub(crate) fn run(
 ) -> Result<Boundary, Failure> {
     progress.begin("reading");
     let (bytes, format) = job.input.open(from)?;
-    if format == Format::ThesisApl {
+    if matches!(format, Format::ThesisApl | Format::ThesisWfr) {
         report.input.format = Some(format.name());
-        let (fragments, solid) = report.timed("reading", || loose::read(job, &bytes))?;
+        let (fragments, solid) = report.timed("reading", || loose::read(job, &bytes, format))?;
         progress.begin("stitching");
         let (brep, _) = report.timed("stitching", || stitch(&fragments))?;
         let is_mesh = true;

@@ -272,11 +272,12 @@ fn output(path: PathBuf, to: Option<OutputFormat>) -> Result<Output, Failure> {
                 Some("3mf") => OutputFormat::Threemf,
                 Some("ply") => OutputFormat::Ply,
                 Some("csg") => OutputFormat::ThesisCsg,
+                Some("cspg") => OutputFormat::Cspg,
                 Some("apl") => OutputFormat::Apl,
                 Some("wfr") => OutputFormat::Wfr,
                 _ => {
                     return Err(Failure::Usage(format!(
-                        "{}: no format has this extension (known: .obj, .glb, .stl, .3mf, .ply, .CSG, .apl, .wfr; or choose one with --to)",
+                        "{}: no format has this extension (known: .obj, .glb, .stl, .3mf, .ply, .CSG, .cspg, .apl, .wfr; or choose one with --to)",
                         path.display()
                     )));
                 }

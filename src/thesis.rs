@@ -1,7 +1,7 @@
 //! `csg2brep thesis`: the programs and experiments of da Silva's thesis.
 
 mod compare;
-mod csg2cspg;
+pub(crate) mod csg2cspg;
 mod half_spaces;
 pub(crate) mod pipe;
 mod propsimpl;

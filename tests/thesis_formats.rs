@@ -299,3 +299,77 @@ fn matrices_may_multiply_columns() {
         }
     }
 }
+
+/// Bézier forms are polynomials again: of a ball without a block, by way of every program that
+/// writes them, the volume is bracketed, and the faces are those of the solid.
+#[test]
+fn bezier_forms_are_a_solid_again() {
+    let folder = support::thesis_files();
+    let folder = folder.path();
+    let boxed = [
+        "thesis",
+        "csg2cspg",
+        "-B",
+        "-2",
+        "-3",
+        "-3",
+        "4",
+        "3",
+        "3",
+        "bored.CSG",
+    ];
+    fs::write(folder.join("a.cspg"), out(folder, &boxed)).unwrap();
+    let free = [&boxed[..], &["-L"]].concat();
+    fs::write(folder.join("b.cspg"), out(folder, &free)).unwrap();
+    out(folder, &["bored.CSG", "--level", "3", "-o", "c.cspg"]);
+    out(folder, &["c.cspg", "--level", "3", "-o", "d.cspg"]);
+    let exact = 32.0 / 3.0 * std::f64::consts::PI - 1.0;
+    for name in ["a.cspg", "b.cspg", "c.cspg", "d.cspg"] {
+        let report = out(folder, &[name, "--tolerance", "0.3%", "--report", "-"]);
+        let report: serde_json::Value = serde_json::from_slice(&report).unwrap();
+        let [low, high] = [0, 1].map(|end| report["volume_interval"][end].as_f64().unwrap());
+        assert!(low < exact && exact < high, "{name}: {low} {exact} {high}");
+        assert_eq!(report["counts"]["shells"], 2, "{name}");
+        assert_eq!(report["counts"]["brep_faces"], 7, "{name}");
+    }
+
+    // Another value at a corner of the last sector makes it another polynomial.
+    let mut bytes = fs::read(folder.join("a.cspg")).unwrap();
+    let last = bytes.len() - 8;
+    bytes[last..].copy_from_slice(&1.25_f64.to_be_bytes());
+    fs::write(folder.join("pieces.cspg"), bytes).unwrap();
+    let mut command = assert_cmd::cargo::cargo_bin_cmd!("csg2brep");
+    let output = command
+        .current_dir(folder)
+        .args(["info", "pieces.cspg"])
+        .output()
+        .unwrap();
+    let said = String::from_utf8_lossy(&output.stderr);
+    assert_eq!(output.status.code(), Some(1), "{said}");
+    assert!(said.contains("is another polynomial in sector 6"), "{said}");
+}
+
+/// LCGRENDERER's mesh, whose numbers are `float`, is a boundary again.
+#[test]
+fn a_wireframe_is_a_boundary_again() {
+    let folder = support::thesis_files();
+    let folder = folder.path();
+    let tetrahedron = measured(&out(folder, &["tetrahedron.wfr", "--report", "-"]));
+    let [volume, area, shells, solids] = tetrahedron;
+    assert!((volume - 1.0 / 6.0).abs() < 1e-15 && (area - 1.5 - 0.75_f64.sqrt()).abs() < 1e-15);
+    assert!(shells.to_bits() == 1.0_f64.to_bits() && solids.to_bits() == shells.to_bits());
+    let args = [
+        "bored.CSG",
+        "--tolerance",
+        "1%",
+        "-o",
+        "a.wfr",
+        "--report",
+        "-",
+    ];
+    let before = measured(&out(folder, &args));
+    let after = measured(&out(folder, &["a.wfr", "--report", "-"]));
+    for (one, other) in before.iter().zip(after) {
+        assert!((one / other - 1.0).abs() < 1e-6, "{before:?} {after:?}");
+    }
+}

@@ -7,11 +7,12 @@ use crate::failure::Failure;
 use crate::run::clip_box;
 use crate::talk::Talk;
 use clap::Args;
-use csg::{Aabb, Polynomial};
+use csg::{Aabb, Axis, Polynomial, Sense, Solid};
 use glam::DVec3;
 use io::thesis::sectors::{self, Sector, SectorPrimitive, Sectors};
-use io::thesis::solid::{self, Instance, MatrixForm};
+use io::thesis::solid::{self, Instance, MatrixForm, material_number};
 use io::thesis::tree::{Operation, Tree, TreeNode};
+use std::cell::RefCell;
 use subdiv::sectors::{bernstein_on_cube, sector_corners};
 
 /// Options of CSG2CSPG, as in the thesis.
@@ -135,14 +136,6 @@ fn convert(
         let planes = planes.collect::<Result<Vec<_>, _>>()?;
         append(planes, false, 1, &mut nodes, &mut named);
     }
-    let corners = sector_corners();
-    let mut sectors: Vec<Sector> = corners
-        .iter()
-        .map(|corners| Sector {
-            vertices: corners.map(|c| in_box(bounds, c).to_array()),
-            primitives: Vec::with_capacity(named.len()),
-        })
-        .collect();
     let (center, half) = (
         0.5 * (bounds.min + bounds.max),
         0.5 * (bounds.max - bounds.min),
@@ -153,9 +146,57 @@ fn convert(
         [0.0, 0.0, half.z, 0.0],
         [center.x, center.y, center.z, 1.0],
     ];
-    for (name, half_space) in (0..).zip(&named) {
-        let polynomial = half_space.polynomial.substituted(&to_box)?;
-        let polynomial = polynomial.without_w_factors();
+    for half_space in &mut named {
+        half_space.polynomial = half_space.polynomial.substituted(&to_box)?;
+    }
+    let tree = Tree::new(nodes).ok_or(csg::Error::MisplacedNode { node: 0, child: 0 })?;
+    Ok(in_sectors(tree, named, bounds))
+}
+
+/// A solid in the six sectors of its domain.
+pub(crate) fn sectors_of(solid: &Solid) -> Sectors {
+    let named = RefCell::new(Vec::new());
+    let name = |material, polynomial| {
+        let mut named = named.borrow_mut();
+        named.push(Named {
+            material,
+            polynomial,
+        });
+        i32::try_from(named.len() - 1).unwrap_or(i32::MAX)
+    };
+    let tree = Tree::from_formula(
+        solid.formula.nodes(),
+        |literal| {
+            let polynomial = &solid.primitives[literal.primitive.0 as usize].polynomial;
+            let polynomial = match literal.sense {
+                Sense::Inside => polynomial.clone(),
+                Sense::Outside => polynomial.clone().negated(),
+            };
+            name(material_number(literal.material), polynomial)
+        },
+        |all| {
+            let one = Polynomial::affine(DVec3::ZERO, if all { 1.0 } else { -1.0 });
+            name(1, one.unwrap_or_else(|_| Polynomial::variable(Axis::X)))
+        },
+    );
+    let cube = Aabb {
+        min: solid.domain.from_unit(DVec3::ZERO),
+        max: solid.domain.from_unit(DVec3::ONE),
+    };
+    in_sectors(tree, named.into_inner(), &cube)
+}
+
+/// Half-spaces, in coordinates from −1 to 1 in the box, in its six sectors.
+fn in_sectors(tree: Tree<i32>, named: Vec<Named>, bounds: &Aabb) -> Sectors {
+    let mut sectors: Vec<Sector> = sector_corners()
+        .iter()
+        .map(|corners| Sector {
+            vertices: corners.map(|c| in_box(bounds, c).to_array()),
+            primitives: Vec::with_capacity(named.len()),
+        })
+        .collect();
+    for (name, half_space) in (0..).zip(named) {
+        let polynomial = half_space.polynomial.without_w_factors();
         let forms = bernstein_on_cube(&polynomial);
         for (sector, coefficients) in sectors.iter_mut().zip(forms) {
             sector.primitives.push(SectorPrimitive {
@@ -166,8 +207,7 @@ fn convert(
             });
         }
     }
-    let tree = Tree::new(nodes).ok_or(csg::Error::MisplacedNode { node: 0, child: 0 })?;
-    Ok(Sectors { tree, sectors })
+    Sectors { tree, sectors }
 }
 
 /// The corner of the box at which a corner of the unit cube comes to lie, exactly.

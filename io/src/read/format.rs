@@ -10,13 +10,23 @@ pub enum Format {
     ScadCsg,
     /// The thesis' Boolean tree of instances, see [`thesis::solid`](crate::thesis::solid).
     ThesisCsg,
+    /// The thesis' Bézier forms, see [`thesis::sectors`](crate::thesis::sectors).
+    ThesisCspg,
     /// The thesis' triangles, see [`thesis::approximation`](crate::thesis::approximation).
     ThesisApl,
+    /// The mesh of the thesis' renderer, see [`thesis::wireframe`](crate::thesis::wireframe).
+    ThesisWfr,
 }
 
 impl Format {
     /// All of them.
-    pub const ALL: [Self; 3] = [Self::ScadCsg, Self::ThesisCsg, Self::ThesisApl];
+    pub const ALL: [Self; 5] = [
+        Self::ScadCsg,
+        Self::ThesisCsg,
+        Self::ThesisCspg,
+        Self::ThesisApl,
+        Self::ThesisWfr,
+    ];
 
     /// The name by which users ask for it.
     #[must_use]
@@ -24,7 +34,9 @@ impl Format {
         match self {
             Self::ScadCsg => "csg",
             Self::ThesisCsg => "thesis-csg",
+            Self::ThesisCspg => "cspg",
             Self::ThesisApl => "apl",
+            Self::ThesisWfr => "wfr",
         }
     }
 
@@ -34,7 +46,9 @@ impl Format {
         match self {
             Self::ScadCsg => "flat CSG dump of OpenSCAD",
             Self::ThesisCsg => "the thesis' binary Boolean tree, .CSG",
+            Self::ThesisCspg => "the thesis' half-spaces in Bézier form",
             Self::ThesisApl => "the thesis' linear approximation of a boundary",
+            Self::ThesisWfr => "the mesh of the thesis' renderer",
         }
     }
 }
@@ -60,7 +74,6 @@ pub enum UnreadableFormat {
 }
 
 const MESH: &str = "a mesh has lost its set operations: start from the CSG model it was made of";
-const SUBSIMPL: &str = "subdivide it with csg2brep thesis subsimpl";
 const LATER: &str = "reading it is not supported yet";
 const UNPACK: &str = "unpack it first";
 
@@ -109,8 +122,8 @@ pub fn sniff(bytes: &[u8], name: &str) -> Result<Format, UnreadableFormat> {
     }
     match extension {
         "apl" => return Ok(Format::ThesisApl),
-        "cspg" => return foreign("a solid in Bézier form", SUBSIMPL),
-        "wfr" => return foreign("a mesh of LCGRENDERER", MESH),
+        "cspg" => return Ok(Format::ThesisCspg),
+        "wfr" => return Ok(Format::ThesisWfr),
         _ => {}
     }
     // The Boolean of its first node; no text begins so.

@@ -107,6 +107,16 @@ pub enum Problem {
         /// Number of vertices.
         count: usize,
     },
+    /// A primitive that is one polynomial here and another one there.
+    #[error(
+        "primitive {name} is another polynomial in sector {sector} than in the first one: subdivide it with csg2brep thesis subsimpl"
+    )]
+    Pieces {
+        /// The primitive's name.
+        name: i32,
+        /// The sector's number, from 1.
+        sector: usize,
+    },
     /// A simplex without volume.
     #[error("the simplex has no volume")]
     FlatSimplex,

@@ -3,7 +3,7 @@
 //! | module | file | thesis |
 //! | --- | --- | --- |
 //! | [`solid`] | `.CSG`, what a user describes | A.2.1 |
-//! | [`sectors`] | `.cspg`, Bézier coefficients in simplices | A.3.1 |
+//! | [`sectors`] | `.cspg`, Bézier coefficients in simplices; back to polynomials: [`power_form`] | A.3.1 |
 //! | [`approximation`] | `.apl`, the boundary's triangles | A.3.3.1 |
 //! | [`subdivision`] | the tree of simplices | A.3.3.2 |
 //! | [`wireframe`] | `.wfr` of LCGRENDERER | A.5.2 |
@@ -21,6 +21,7 @@ mod bytes;
 pub mod colors;
 pub mod display;
 mod error;
+pub mod power_form;
 pub mod projection;
 pub mod sectors;
 pub mod solid;

@@ -6,12 +6,9 @@
 //! matrix multiplies row vectors, with the translation in its last row.
 
 use super::bytes::{Cursor, Encoder, further, in_either_order, is_ordinary};
-use super::tree::{Operation, Operators, Tree, TreeNode};
+use super::tree::{Operators, Tree};
 use super::{ByteOrder, Decoded, Error, Problem};
-use csg::{
-    Material, MaterialId, Model, ModelBuilder, Node, NodeId, Polynomial, Sense, Shape, Solid,
-    Transform,
-};
+use csg::{Material, MaterialId, Model, Node, Polynomial, Sense, Shape, Solid, Transform};
 use glam::DVec3;
 use std::io::Write;
 
@@ -215,34 +212,13 @@ pub fn write(
 /// # Errors
 /// Those of shapes and transforms, which [`read`] has checked already.
 pub fn to_model(tree: &Tree<Instance>, form: MatrixForm) -> Result<Model, csg::Error> {
-    let mut builder = ModelBuilder::new();
-    let mut done: Vec<NodeId> = Vec::new();
-    // Backwards, both operands of an operator stand on the stack when it comes, the left on top.
-    for node in tree.nodes().iter().rev() {
-        let next = match node {
-            TreeNode::Leaf(instance) => {
-                let shape = builder.add(Node::Shape(instance.shape()?));
-                let placed = builder.add(Node::Instance(instance.transform(form)?, shape));
-                let color = material_color(instance.material);
-                let material = builder.material(Material { color });
-                builder.add(Node::Painted(material, placed))
-            }
-            TreeNode::Operator(operation) => {
-                let operands: Vec<NodeId> =
-                    [done.pop(), done.pop()].into_iter().flatten().collect();
-                builder.add(match operation {
-                    Operation::Union => Node::Union(operands),
-                    Operation::Intersection => Node::Intersection(operands),
-                    Operation::Difference => Node::Difference(operands),
-                })
-            }
-        };
-        done.push(next);
-    }
-    let root = done
-        .pop()
-        .unwrap_or_else(|| builder.add(Node::Union(Vec::new())));
-    Ok(builder.finish(root))
+    tree.to_model(|builder, instance| {
+        let shape = builder.add(Node::Shape(instance.shape()?));
+        let placed = builder.add(Node::Instance(instance.transform(form)?, shape));
+        let color = material_color(instance.material);
+        let material = builder.material(Material { color });
+        Ok(builder.add(Node::Painted(material, placed)))
+    })
 }
 
 /// The number in the thesis' files of a material of ours: 0 is taken, as the background's colour.

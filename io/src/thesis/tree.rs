@@ -3,7 +3,7 @@
 
 use super::bytes::{Cursor, Encoder};
 use super::{Error, Problem};
-use csg::{FormulaNode, Literal};
+use csg::{FormulaNode, Literal, Model, ModelBuilder, Node, NodeId};
 use std::io::Write;
 
 /// A regularized set operation.
@@ -198,6 +198,35 @@ impl<L> Tree<L> {
             }
         }
         formula
+    }
+
+    /// The tree as a model, given the node of each leaf.
+    pub(super) fn to_model<E>(
+        &self,
+        mut leaf: impl FnMut(&mut ModelBuilder, &L) -> Result<NodeId, E>,
+    ) -> Result<Model, E> {
+        let mut builder = ModelBuilder::new();
+        let mut done: Vec<NodeId> = Vec::new();
+        // Backwards, both operands of an operator stand on the stack when it comes, the left on top.
+        for node in self.nodes.iter().rev() {
+            let next = match node {
+                TreeNode::Leaf(content) => leaf(&mut builder, content)?,
+                TreeNode::Operator(operation) => {
+                    let operands: Vec<NodeId> =
+                        [done.pop(), done.pop()].into_iter().flatten().collect();
+                    builder.add(match operation {
+                        Operation::Union => Node::Union(operands),
+                        Operation::Intersection => Node::Intersection(operands),
+                        Operation::Difference => Node::Difference(operands),
+                    })
+                }
+            };
+            done.push(next);
+        }
+        let root = done
+            .pop()
+            .unwrap_or_else(|| builder.add(Node::Union(Vec::new())));
+        Ok(builder.finish(root))
     }
 
     /// The nodes in prefix order.

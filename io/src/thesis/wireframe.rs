@@ -19,6 +19,22 @@ pub struct Wireframe {
 }
 
 impl Wireframe {
+    /// Its faces as triangles around their first vertices, of material 1.
+    #[must_use]
+    pub fn triangles(&self) -> Vec<Face> {
+        let corner = |index: u32| self.vertices.get(index as usize).copied();
+        let corner = |index: u32| corner(index).unwrap_or_default().map(f64::from);
+        let fan = |face: &Vec<u32>| {
+            let (first, rest) = face.split_first()?;
+            let triangles = rest.windows(2).map(|pair| Face {
+                material: 1,
+                corners: [*first, pair[0], pair[1]].map(corner),
+            });
+            Some(triangles.collect::<Vec<Face>>())
+        };
+        self.faces.iter().filter_map(fan).flatten().collect()
+    }
+
     /// Joins corners of exactly equal position.
     ///
     /// # Errors
