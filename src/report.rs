@@ -64,6 +64,10 @@ pub(crate) struct Report {
     pub(crate) imprecise_primitives: Vec<Imprecise>,
     /// Vertices doubled where the boundary touches itself.
     pub(crate) split_vertices: u64,
+    /// Closed pieces that were dropped: no larger than four cells, and among cells that are not certified.
+    pub(crate) specks: u64,
+    /// Faces like that which became part of a neighbour.
+    pub(crate) crumbs: u64,
     /// Cells in which facets of different surfaces cross by rounding of their positions; elsewhere
     /// none cross.
     pub(crate) crossing_cells: u64,
@@ -242,6 +246,8 @@ impl Report {
             nearly_equal_primitives: Vec::new(),
             imprecise_primitives: Vec::new(),
             split_vertices: 0,
+            specks: 0,
+            crumbs: 0,
             crossing_cells: 0,
             quality: None,
             warnings: Vec::new(),
@@ -306,6 +312,8 @@ impl Report {
         self.one_way_cells = of.one_way_leaves;
         self.volume_interval = of.volume_interval;
         self.split_vertices = of.split_vertices;
+        self.specks = of.specks;
+        self.crumbs = of.crumbs;
         self.crossing_cells = of.crossing_leaves;
         self.uncertified_count = of.uncertified_leaves;
         self.uncertified = of.uncertified.iter().map(Uncertified::from).collect();

@@ -12,6 +12,7 @@ use crate::limits::Budget;
 use crate::margin::Margin;
 use crate::prove::{Proof, Prover, prove};
 use crate::settings::{Observer, Report, Rule, Settings};
+use crate::specks::Doubtful;
 use crate::topology::kindred::{Kin, families};
 use crate::walk::{Sector, Visitor, Walker};
 use csg::Solid;
@@ -185,15 +186,19 @@ fn run(plan: &Plan<'_>, observer: &dyn Observer) -> Result<Outcome, Error> {
         .then(|| prove(plan, &budget, &sectors, head, &mut report, observer));
     lap(&mut report.seconds[0]);
     budget.check()?;
-    let (mut splits, trails) = match proof {
-        Some(Proof { splits, trails }) => {
+    let (mut splits, trails, doubtful) = match proof {
+        Some(Proof {
+            splits,
+            trails,
+            doubtful,
+        }) => {
             let count = splits.len();
             let mut all = FxHashSet::with_capacity_and_hasher(count * 2, rustc_hash::FxBuildHasher);
             close(&mut all, splits, |_| {});
             report.balance_points = (all.len() - count) as u64;
-            (Some(all), trails)
+            (Some(all), trails, doubtful)
         }
-        None => (None, Vec::new()),
+        None => (None, Vec::new(), Doubtful::default()),
     };
     lap(&mut report.seconds[1]);
     // Leaves that only the closure made are tested on the way, and the rare ones that fail ask
@@ -222,7 +227,7 @@ fn run(plan: &Plan<'_>, observer: &dyn Observer) -> Result<Outcome, Error> {
             }
         });
     }
-    let fragments = gather(plan, harvests, &mut report);
+    let fragments = gather(plan, harvests, doubtful, &mut report);
     lap(&mut report.seconds[2]);
     if plan.topology {
         report.proved_topology = Some(report.uncertified_leaves == 0);

@@ -10,6 +10,7 @@ use crate::mesh::{MeshBuilder, join};
 use crate::predicates::{Sign, vertex_sign};
 use crate::settings::{MAX_SPOTS, Observer, Report, Spot};
 use crate::simplex::Simplex;
+use crate::specks::{Doubtful, clear_specks};
 use crate::topology::TopologyRule;
 use crate::trail::{Step, Trail};
 use crate::untangle::untangle;
@@ -101,6 +102,7 @@ pub(crate) fn extract(
 pub(crate) fn gather(
     plan: &Plan<'_>,
     harvests: Vec<Option<Harvest>>,
+    mut doubtful: Doubtful,
     report: &mut Report,
 ) -> Fragments {
     let mut meshes = Vec::with_capacity(harvests.len());
@@ -115,6 +117,7 @@ pub(crate) fn gather(
         let room = MAX_SPOTS - report.uncertified.len();
         let listed = harvest.uncertified.into_iter().take(room);
         report.uncertified.extend(listed);
+        doubtful.append(harvest.doubtful);
         volume.add(harvest.mesh.volume());
         volume.add(harvest.gap);
         meshes.push(harvest.mesh);
@@ -126,6 +129,9 @@ pub(crate) fn gather(
     let primitives = plan.solid.primitives.iter();
     let is_plane: Vec<bool> = primitives.map(|p| p.polynomial.degree() == 1).collect();
     report.crossing_leaves = untangle(&mut fragments, &tangles, &is_plane);
+    let cleared = clear_specks(&mut fragments, &doubtful, &domain);
+    report.specks = cleared.pieces;
+    report.crumbs = cleared.faces;
     fragments
 }
 
@@ -140,6 +146,7 @@ pub(crate) struct Harvest {
     gap: VolumeGap,
     uncertified_leaves: u64,
     uncertified: Vec<Spot>,
+    doubtful: Doubtful,
 }
 
 impl Harvest {
@@ -152,6 +159,7 @@ impl Harvest {
             gap: VolumeGap::default(),
             uncertified_leaves: 0,
             uncertified: Vec::new(),
+            doubtful: Doubtful::default(),
         }
     }
 }
@@ -261,6 +269,7 @@ impl Harvester<'_> {
             return true;
         }
         self.harvest.uncertified_leaves += 1;
+        self.harvest.doubtful.push(simplex);
         if self.harvest.uncertified.len() < MAX_SPOTS {
             let spot = Spot::new(&self.plan.solid.domain, simplex, frame, reason);
             self.harvest.uncertified.push(spot);

@@ -69,6 +69,7 @@ mod settings;
 mod sheets;
 mod simplex;
 mod snap;
+mod specks;
 mod topology;
 mod trail;
 mod untangle;

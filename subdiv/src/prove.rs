@@ -7,6 +7,7 @@ use crate::lattice::Point;
 use crate::limits::Budget;
 use crate::settings::{MAX_SPOTS, Observer, Reason, Report, Spot};
 use crate::simplex::Simplex;
+use crate::specks::Doubtful;
 use crate::topology::TopologyRule;
 use crate::trail::Trail;
 use crate::walk::{Frame, Pruning, Sector, Visitor};
@@ -25,6 +26,8 @@ pub(crate) struct Proof {
     pub(crate) splits: Vec<Point>,
     /// The decisions in each sector.
     pub(crate) trails: Vec<Trail>,
+    /// Where nothing could be proved.
+    pub(crate) doubtful: Doubtful,
 }
 
 /// First traversal: where the rule wants to bisect.
@@ -55,6 +58,7 @@ pub(crate) fn prove(
     let mut splits = head.findings.splits;
     let mut trails = Vec::with_capacity(parts.len());
     let mut largest = 0.0f64;
+    let mut doubtful = head.findings.doubtful;
     report.visited += head.findings.visited;
     for part in parts {
         splits.extend(part.splits);
@@ -63,6 +67,7 @@ pub(crate) fn prove(
         report.visited += part.visited;
         report.uncertified_leaves += part.uncertified_leaves;
         report.one_way_leaves += part.one_way_leaves;
+        doubtful.append(part.doubtful);
         let room = MAX_SPOTS - report.uncertified.len();
         report
             .uncertified
@@ -75,7 +80,11 @@ pub(crate) fn prove(
     report.largest_deviation = plan
         .tolerance
         .map(|_| largest * domain.size() * (1.0 + f64::EPSILON) + rounding);
-    Proof { splits, trails }
+    Proof {
+        splits,
+        trails,
+        doubtful,
+    }
 }
 
 /// What one subtree's first traversal found.
@@ -88,6 +97,7 @@ struct Findings {
     one_way_leaves: u64,
     uncertified_leaves: u64,
     uncertified: Vec<Spot>,
+    doubtful: Doubtful,
 }
 
 /// Applies the rule to every simplex on the way down.
@@ -154,6 +164,7 @@ impl<'a> Prover<'a> {
             }
             Err(reason) => {
                 self.findings.uncertified_leaves += 1;
+                self.findings.doubtful.push(simplex);
                 if self.findings.uncertified.len() < MAX_SPOTS {
                     let spot = Spot::new(&self.plan.solid.domain, simplex, frame, reason);
                     self.findings.uncertified.push(spot);

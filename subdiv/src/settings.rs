@@ -110,6 +110,11 @@ pub struct Report {
     pub uncertified_leaves: u64,
     /// The first of them, at most [`MAX_SPOTS`].
     pub uncertified: Vec<Spot>,
+    /// Closed pieces as small as the leaves that are not certified, beside such leaves, that were
+    /// dropped: at a cone's apex, or where surfaces touch.
+    pub specks: u64,
+    /// Faces like that which became part of a neighbour.
+    pub crumbs: u64,
     /// Vertices duplicated since the boundary touches itself there.
     pub split_vertices: u64,
     /// Leaves in which triangles of different surfaces cross by rounding of their positions;
