@@ -274,8 +274,12 @@ mod tests {
             max: DVec3::ONE,
         });
         let side = 1 << 14;
+        // The lattice point next to it.
         let middle = 0.5 * (domain.to_centered(DVec3::splat(0.02)) + 1.0);
-        let [x, y, z] = (middle * f64::from(1 << 20)).to_array().map(|x| x as u32);
+        let scaled = middle * f64::from(1 << 20);
+        let [x, y, z] = scaled
+            .to_array()
+            .map(|x| (0..1 << 20).find(|&k| f64::from(k) >= x).unwrap());
         let doubtful = Doubtful {
             size: f64::from(side) / f64::from(1 << 20),
             midpoints: vec![Point::new([x, y, z]), Point::new([x + side, y, z])],
