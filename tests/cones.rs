@@ -3,9 +3,7 @@
 
 #![allow(clippy::unwrap_used, reason = "a panic is how a test fails")]
 
-#[allow(dead_code, reason = "each test uses its own part")]
 mod stages;
-#[allow(dead_code, reason = "each test uses its own part")]
 mod trees;
 
 use proptest::prelude::*;
