@@ -121,7 +121,7 @@ pub(crate) struct ConvertArgs {
     #[arg(long, value_name = "FORMAT", requires = "outputs")]
     pub(crate) to: Option<OutputFormat>,
     /// What a model unit is, for formats that say it: 3MF (mm if not given), GLB (m if not
-    /// given), OBJ and PLY (a comment); no coordinates change
+    /// given), OBJ and PLY (a comment). Coordinates change in STEP only, which is in millimetres
     #[arg(long, value_name = "UNIT", requires = "outputs")]
     pub(crate) unit: Option<LengthUnit>,
     /// The format of the input, whatever its content and extension
@@ -417,6 +417,8 @@ pub(crate) enum OutputFormat {
     Threemf,
     /// Binary PLY
     Ply,
+    /// STEP AP242, with true surfaces
+    Step,
     /// Binary Boolean tree of the thesis, .CSG: the solid itself, not its mesh
     ThesisCsg,
     /// Half-spaces of the thesis in Bézier form: the solid itself, not its mesh

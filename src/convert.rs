@@ -1,14 +1,16 @@
 //! `csg2brep IN -o OUT`: convert, write, report.
 
+use crate::args::OutputFormat;
 use crate::failure::Failure;
 use crate::memory;
 use crate::output;
 use crate::pipeline::{self, Boundary};
 use crate::progress::Progress;
 use crate::report::{InputReport, Report};
-use crate::run::{Conversion, Job, Target};
-use crate::summary::{grouped, significant, summary};
+use crate::run::{Conversion, Job, Output, Target};
+use crate::summary::{counted, grouped, significant, summary};
 use crate::talk::Talk;
+use crate::true_surfaces;
 use std::time::Instant;
 
 /// Converts, writes all outputs and the report, and says what came out.
@@ -35,6 +37,15 @@ pub(crate) fn run(conversion: &Conversion, talk: Talk) -> Result<(), Failure> {
             "{} cells are certified one way only: the mesh is near the true boundary there, the \
              reverse is not proved (--strict)",
             grouped(report.one_way_cells)
+        )));
+    }
+    if conversion.strict
+        && let Some(step) = &report.step
+        && !step.faceted.is_empty()
+    {
+        let solids = counted(step.faceted.len() as u64, "solid");
+        return Err(Failure::NotCertified(format!(
+            "{solids} without true surfaces in STEP (--strict)"
         )));
     }
     if conversion.strict && report.uncertified_count > 0 {
@@ -69,22 +80,42 @@ fn convert(conversion: &Conversion, talk: Talk, report: &mut Report) -> Result<(
         let text = format!("{count} warnings are errors (--strict); nothing was written");
         return Err(Failure::BadInput(text));
     }
-    progress.begin("writing");
-    let remarks = report.timed("writing", || write(conversion, &boundary))?;
-    for remark in remarks {
-        progress.hidden_while(|| talk.warn(&remark));
-        report.warnings.push(remark);
+    for output in &conversion.outputs {
+        let remark = write(output, &boundary, conversion, &progress, report)?;
+        if let Some(text) = remark {
+            let remark = format!("{}: {text}", output.target.name());
+            progress.hidden_while(|| talk.warn(&remark));
+            report.warnings.push(remark);
+        }
     }
     Ok(())
 }
 
-fn write(conversion: &Conversion, boundary: &Boundary) -> Result<Vec<String>, Failure> {
-    let mut remarks = Vec::new();
-    for output in &conversion.outputs {
-        let remark = output::write(output, boundary, conversion.unit, conversion.job.dialect)?;
-        remarks.extend(remark.map(|text| format!("{}: {text}", output.target.name())));
+/// Writes one file; returns what the user should know of it.
+fn write(
+    output: &Output,
+    boundary: &Boundary,
+    conversion: &Conversion,
+    progress: &Progress,
+    report: &mut Report,
+) -> Result<Option<String>, Failure> {
+    let needs_solid = matches!(
+        output.format,
+        OutputFormat::ThesisCsg | OutputFormat::Cspg | OutputFormat::Step
+    );
+    if needs_solid && boundary.is_mesh {
+        let text =
+            "the input is a mesh, which has lost its set operations: only a mesh can be written";
+        return Err(Failure::BadInput(text.to_owned()));
     }
-    Ok(remarks)
+    if output.format == OutputFormat::Step {
+        return true_surfaces::write(&output.target, boundary, conversion, progress, report);
+    }
+    progress.begin("writing");
+    let Conversion { job, unit, .. } = conversion;
+    report.timed("writing", || {
+        output::write(output, boundary, *unit, job.dialect)
+    })
 }
 
 fn write_report(report: &Report, target: &Target) -> Result<(), Failure> {

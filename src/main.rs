@@ -25,6 +25,7 @@ mod streams;
 mod summary;
 mod talk;
 mod thesis;
+mod true_surfaces;
 mod values;
 mod view;
 

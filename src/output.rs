@@ -25,12 +25,6 @@ pub(crate) fn write(
     unit: Option<Unit>,
     dialect: DialectArgs,
 ) -> Result<Option<String>, Failure> {
-    let is_solid = matches!(output.format, OutputFormat::ThesisCsg | OutputFormat::Cspg);
-    if is_solid && boundary.is_mesh {
-        let text =
-            "the input is a mesh, which has lost its set operations: only a mesh can be written";
-        return Err(Failure::BadInput(text.to_owned()));
-    }
     let library = match (output.format, &output.target) {
         (OutputFormat::Obj, Target::File(path)) if is_painted(&boundary.solid.materials) => {
             Some(path.with_extension("mtl"))
@@ -118,6 +112,8 @@ fn mesh(
                 return Ok(Some(text.to_owned()));
             }
         }
+        // Not a mesh: `crate::true_surfaces`.
+        OutputFormat::Step => {}
         OutputFormat::ThesisCsg => {
             let tree = solid::from_solid(&boundary.solid, dialect.form());
             solid::write(&tree, dialect.operators(), ByteOrder::Big, &mut out)?;

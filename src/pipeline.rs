@@ -18,6 +18,9 @@ use subdiv::{Fragments, Rule};
 /// A solid's boundary, ready to be written.
 pub(crate) struct Boundary {
     pub(crate) brep: Valid<Brep>,
+    /// The proved mesh for true surfaces, of which only faces, edges and vertices matter, where
+    /// it is not `brep`.
+    pub(crate) topology: Option<Valid<Brep>>,
     pub(crate) solid: Solid,
     /// Whether a mesh was read, so that nothing is known of the solid but its boundary.
     pub(crate) is_mesh: bool,
@@ -39,8 +42,10 @@ pub(crate) fn run(
         progress.begin("stitching");
         let (brep, _) = report.timed("stitching", || stitch(&fragments))?;
         let is_mesh = true;
+        let topology = None;
         let boundary = Boundary {
             brep,
+            topology,
             solid,
             is_mesh,
         };
@@ -62,7 +67,7 @@ pub(crate) fn run(
         report.warnings.push(warning);
     }
 
-    let brep = mesh(&solid, job, progress, report)?;
+    let (brep, topology) = mesh(&solid, job, progress, report)?;
     if let Some(warning) = too_coarse(report) {
         talk.warn(&warning);
         report.warnings.push(warning);
@@ -71,6 +76,7 @@ pub(crate) fn run(
     Ok(measured(
         Boundary {
             brep,
+            topology,
             solid,
             is_mesh,
         },
@@ -92,38 +98,39 @@ fn measured(boundary: Boundary, progress: &Progress, report: &mut Report) -> Bou
     boundary
 }
 
-/// The boundary, with the facets that were asked for.
+/// The boundary, with the facets that were asked for, and its topology, if that is another one.
 fn mesh(
     solid: &Solid,
     job: &Job,
     progress: &Progress,
     report: &mut Report,
-) -> Result<Valid<Brep>, Failure> {
+) -> Result<(Valid<Brep>, Option<Valid<Brep>>), Failure> {
     let rule = job.rule(solid.extent.diagonal());
-    let mut own = None;
-    if job.mesh == MeshKind::Surfaces
+    if job.is_step_only {
+        let brep = subdivided(solid, job, rule, progress, report)?;
+        return Ok((brep, None));
+    }
+    let is_from_surfaces = job.mesh == MeshKind::Surfaces;
+    let (refine, keep) = (IfTroubled::Refine, IfTroubled::Keep);
+    let (mut topology, mut own) = (None, None);
+    if (is_from_surfaces || job.has_step)
         && let Rule::Tolerance(tolerance) | Rule::Topology { finest: tolerance } = rule
     {
-        // The second way is the one whose facets are within the tolerance: single faces keep them.
-        for (rule, if_troubled) in [
-            (Rule::Topology { finest: tolerance }, IfTroubled::Refine),
-            (Rule::Tolerance(tolerance), IfTroubled::Keep),
-        ] {
+        let coarse = Rule::Topology { finest: tolerance };
+        let brep = subdivided(solid, job, coarse, progress, report)?;
+        let mut facets = None;
+        if is_from_surfaces {
+            facets = tessellated(&brep, solid, job, tolerance, refine, progress, report)?;
+        }
+        topology = Some(brep);
+        if is_from_surfaces && facets.is_none() {
+            let rule = Rule::Tolerance(tolerance);
             let brep = subdivided(solid, job, rule, progress, report)?;
-            progress.begin("tessellation");
-            let tessellated = report.timed("tessellation", || {
-                brep::tessellate(&brep, solid, tolerance, job.fit, if_troubled)
-            });
-            stop_if_interrupted()?;
-            if let Some((brep, counts)) = tessellated {
-                report.add_tessellation(&counts);
-                if counts.kept_faces == 0 {
-                    return Ok(brep);
-                }
-                let (brep, ..) = report.timed("merging", || merge(brep, solid))?;
-                return Ok(brep);
-            }
+            facets = tessellated(&brep, solid, job, tolerance, keep, progress, report)?;
             own = Some(brep);
+        }
+        if let Some(facets) = facets {
+            return Ok((facets, topology));
         }
     }
     let brep = match own {
@@ -132,14 +139,63 @@ fn mesh(
     };
     if job.mesh == MeshKind::Leaves {
         report.counts.leaf_facets = brep.facet_count() as u64;
-        return Ok(brep);
+        return Ok((brep, topology));
     }
     progress.begin("merging");
     let (brep, counts, moved) = report.timed("merging", || merge(brep, solid))?;
     report.add_merging(&counts);
     report.add_deviation(moved);
     stop_if_interrupted()?;
+    Ok((brep, topology))
+}
+
+/// Facets of a solid of which only the topology was proved so far, within `tolerance` of its
+/// surfaces.
+pub(crate) fn facets(
+    boundary: &Boundary,
+    job: &Job,
+    tolerance: f64,
+    progress: &Progress,
+    report: &mut Report,
+) -> Result<Valid<Brep>, Failure> {
+    let Boundary { brep, solid, .. } = boundary;
+    let refine = IfTroubled::Refine;
+    if let Some(brep) = tessellated(brep, solid, job, tolerance, refine, progress, report)? {
+        return Ok(brep);
+    }
+    let fine = subdivided(solid, job, Rule::Tolerance(tolerance), progress, report)?;
+    let keep = IfTroubled::Keep;
+    if let Some(brep) = tessellated(&fine, solid, job, tolerance, keep, progress, report)? {
+        return Ok(brep);
+    }
+    let (brep, ..) = report.timed("merging", || merge(fine, solid))?;
     Ok(brep)
+}
+
+/// Facets from the true surfaces, where that is possible.
+fn tessellated(
+    topology: &Valid<Brep>,
+    solid: &Solid,
+    job: &Job,
+    tolerance: f64,
+    if_troubled: IfTroubled,
+    progress: &Progress,
+    report: &mut Report,
+) -> Result<Option<Valid<Brep>>, Failure> {
+    progress.begin("tessellation");
+    let tessellated = report.timed("tessellation", || {
+        brep::tessellate(topology, solid, tolerance, job.fit, if_troubled)
+    });
+    stop_if_interrupted()?;
+    let Some((brep, counts)) = tessellated else {
+        return Ok(None);
+    };
+    report.add_tessellation(&counts);
+    if counts.kept_faces == 0 {
+        return Ok(Some(brep));
+    }
+    let (brep, ..) = report.timed("merging", || merge(brep, solid))?;
+    Ok(Some(brep))
 }
 
 /// The boundary with the facets of the subdivision.

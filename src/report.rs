@@ -5,6 +5,7 @@
 
 use crate::summary::rounded_up;
 use brep::{Brep, Groups, Properties, Quality, Retriangulated, Shells, Tessellated};
+use io::write::step;
 use schemars::JsonSchema;
 use serde::Serialize;
 use std::time::Instant;
@@ -73,6 +74,8 @@ pub(crate) struct Report {
     pub(crate) crossing_cells: u64,
     /// Shapes of the facets; null if there are none.
     pub(crate) quality: Option<QualityReport>,
+    /// What became of the solids in the STEP file; null if none was written.
+    pub(crate) step: Option<StepReport>,
     /// What was said about the model.
     pub(crate) warnings: Vec<String>,
     /// Why the run ended early, if it did.
@@ -213,6 +216,62 @@ pub(crate) struct QualityReport {
     pub(crate) shortest_edge: f64,
 }
 
+/// A STEP file.
+#[derive(Clone, Debug, Serialize, JsonSchema)]
+pub(crate) struct StepReport {
+    /// Solids in it.
+    pub(crate) solids: u64,
+    /// Solids left out: they were smaller than the tolerance, and points in truth.
+    pub(crate) specks: u64,
+    /// Those of them that are plane facets for want of a true form.
+    pub(crate) faceted: Vec<FacetedSolid>,
+    /// Faces on true surfaces.
+    pub(crate) faces: u64,
+    /// Edges that are splines, for want of a closed form.
+    pub(crate) spline_edges: u64,
+    /// Largest distance of such a spline from its surfaces.
+    pub(crate) accuracy: f64,
+    /// Edges merged away since their ends are one point in truth.
+    pub(crate) crumb_edges: u64,
+    /// Faces merged away with them.
+    pub(crate) crumb_faces: u64,
+    /// Faces, or ends of faces, merged away since they have no width in truth.
+    pub(crate) slivers: u64,
+    /// Whether no mesh was written beside it.
+    #[serde(skip)]
+    pub(crate) is_alone: bool,
+}
+
+/// A solid that was written as plane facets.
+#[derive(Clone, Debug, Serialize, JsonSchema)]
+pub(crate) struct FacetedSolid {
+    /// Its name in the file.
+    pub(crate) name: String,
+    /// Why it has no true form there.
+    pub(crate) reason: String,
+}
+
+impl StepReport {
+    pub(crate) fn new(of: step::Outcome, accuracy: f64, is_alone: bool) -> Self {
+        let faceted = of.faceted.into_iter().map(|solid| FacetedSolid {
+            name: solid.name,
+            reason: solid.reason,
+        });
+        Self {
+            solids: of.solids as u64,
+            specks: of.specks as u64,
+            faceted: faceted.collect(),
+            faces: of.faces as u64,
+            spline_edges: of.spline_edges as u64,
+            accuracy,
+            crumb_edges: of.crumbs.edges as u64,
+            crumb_faces: of.crumbs.faces as u64,
+            slivers: of.crumbs.slivers as u64,
+            is_alone,
+        }
+    }
+}
+
 impl Report {
     /// The JSON schema that all reports follow, indented, with a final line feed.
     pub(crate) fn schema() -> serde_json::Result<String> {
@@ -250,6 +309,7 @@ impl Report {
             crumbs: 0,
             crossing_cells: 0,
             quality: None,
+            step: None,
             warnings: Vec::new(),
             error: None,
         }

@@ -43,6 +43,10 @@ pub(crate) struct Job {
     pub(crate) criterion: subdiv::Criterion,
     pub(crate) mesh: args::MeshKind,
     pub(crate) fit: brep::Fit,
+    /// Whether true surfaces are to be written, for which the topology is proved.
+    pub(crate) has_step: bool,
+    /// Whether nothing else is to be written, so that facets are not needed.
+    pub(crate) is_step_only: bool,
     pub(crate) threads: Option<usize>,
     pub(crate) max_cells: u64,
     pub(crate) max_memory_bytes: u64,
@@ -121,6 +125,8 @@ impl Job {
                 args::FitKind::Inscribed => brep::Fit::Inscribed,
                 args::FitKind::Mean => brep::Fit::Mean,
             },
+            has_step: false,
+            is_step_only: false,
             threads: args.threads.map(usize::from),
             max_cells: args.max_cells.get(),
             max_memory_bytes: memory::allowed_bytes(args.memory),
@@ -205,7 +211,15 @@ impl Conversion {
         let outputs = args.outputs.into_iter().map(|path| output(path, to));
         let outputs = outputs.collect::<Result<Vec<_>, _>>()?;
         let report = args.report.map(Target::new);
-        let job = Job::new(input, &args.model)?;
+        let mut job = Job::new(input, &args.model)?;
+        let is_step = |output: &Output| output.format == OutputFormat::Step;
+        job.has_step = outputs.iter().any(is_step);
+        job.is_step_only = job.has_step && outputs.iter().all(is_step);
+        if job.is_step_only
+            && let Precision::Tolerance(finest) = job.precision
+        {
+            job.precision = Precision::Topology(finest);
+        }
         let targets: Vec<&Target> = outputs.iter().map(|o| &o.target).chain(&report).collect();
         check_targets(&job.input, &targets)?;
         Ok(Self {
@@ -271,13 +285,14 @@ fn output(path: PathBuf, to: Option<OutputFormat>) -> Result<Output, Failure> {
                 Some("stl") => OutputFormat::Stl,
                 Some("3mf") => OutputFormat::Threemf,
                 Some("ply") => OutputFormat::Ply,
+                Some("step" | "stp") => OutputFormat::Step,
                 Some("csg") => OutputFormat::ThesisCsg,
                 Some("cspg") => OutputFormat::Cspg,
                 Some("apl") => OutputFormat::Apl,
                 Some("wfr") => OutputFormat::Wfr,
                 _ => {
                     return Err(Failure::Usage(format!(
-                        "{}: no format has this extension (known: .obj, .glb, .stl, .3mf, .ply, .CSG, .cspg, .apl, .wfr; or choose one with --to)",
+                        "{}: no format has this extension (known: .obj, .glb, .stl, .3mf, .ply, .step, .CSG, .cspg, .apl, .wfr; or choose one with --to)",
                         path.display()
                     )));
                 }

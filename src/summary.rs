@@ -1,6 +1,6 @@
 //! The closing line: what came out, in words and round numbers.
 
-use crate::report::Report;
+use crate::report::{Report, StepReport};
 use glam::DVec3;
 
 /// `part.csg -> part.glb: 12,340 triangles, 1 solid, genus 5, volume 18729.7, watertight, …`.
@@ -20,10 +20,15 @@ fn facts(report: &Report) -> Vec<String> {
     if counts.facets == 0 {
         return vec!["the solid is empty".to_owned(), seconds];
     }
-    let mut facts = vec![
-        counted(counts.facets, "triangle"),
-        counted(counts.solids, "solid"),
-    ];
+    // Without a mesh to write there was but a coarse one, of which nobody wants to know.
+    let step_only = report.step.as_ref().filter(|step| step.is_alone);
+    let mut facts = match step_only {
+        Some(step) => vec![counted(step.solids, "solid")],
+        None => vec![
+            counted(counts.facets, "triangle"),
+            counted(counts.solids, "solid"),
+        ],
+    };
     let voids = counts.shells.saturating_sub(counts.solids);
     if voids > 0 {
         facts.push(match voids {
@@ -34,15 +39,21 @@ fn facts(report: &Report) -> Vec<String> {
     if let Some(genus) = report.genus {
         facts.push(format!("genus {}", grouped(genus)));
     }
-    if let Some(volume) = report.volume {
-        facts.push(format!("volume {}", significant(volume, 6)));
+    if step_only.is_none() {
+        facts.extend(
+            report
+                .volume
+                .map(|volume| format!("volume {}", significant(volume, 6))),
+        );
+        facts.push("watertight".to_owned());
     }
-    facts.push("watertight".to_owned());
+    facts.extend(report.step.iter().flat_map(true_surfaces));
     facts.extend(report.deviation());
     if report.proved_topology {
         facts.push("topology proved".to_owned());
     }
-    if let Some(quality) = report.quality.filter(|quality| quality.slivers > 0) {
+    let quality = report.quality.filter(|_| step_only.is_none());
+    if let Some(quality) = quality.filter(|quality| quality.slivers > 0) {
         facts.push(counted(quality.slivers, "sliver"));
     }
     if report.uncertified_count > 0 {
@@ -55,6 +66,30 @@ fn facts(report: &Report) -> Vec<String> {
         facts.push("clipped to the box".to_owned());
     }
     facts.push(seconds);
+    facts
+}
+
+/// What is in a STEP file.
+fn true_surfaces(step: &StepReport) -> Vec<String> {
+    let mut facts = Vec::new();
+    if step.faces > 0 {
+        facts.push(format!("{} on true surfaces", counted(step.faces, "face")));
+    }
+    if step.spline_edges > 0 {
+        facts.push(format!(
+            "{} within {}",
+            counted(step.spline_edges, "spline edge"),
+            rounded_up(step.accuracy)
+        ));
+    }
+    let crumbs = step.crumb_edges + step.crumb_faces + step.slivers;
+    if crumbs > 0 {
+        facts.push(format!("{} merged", counted(crumbs, "crumb")));
+    }
+    if !step.faceted.is_empty() {
+        let count = counted(step.faceted.len() as u64, "solid");
+        facts.push(format!("{count} in plane facets"));
+    }
     facts
 }
 

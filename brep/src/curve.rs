@@ -7,8 +7,10 @@
 //! Aided Design and Manufacturing*, chapter 5.
 
 mod closed_form;
+mod guide;
 mod meet;
 mod plane_conic;
+mod spline;
 mod trace;
 
 use crate::group::{Edge, Groups};
@@ -19,6 +21,8 @@ use glam::DVec3;
 use meet::Meet;
 use slotmap::SecondaryMap;
 use std::f64::consts::TAU;
+
+pub use spline::Spline;
 
 /// A curve in model units. Parameters are lengths on lines, angles on circles and ellipses, and
 /// positions in the list of points on traced curves.
@@ -62,8 +66,8 @@ pub struct EdgeCurve {
     pub pieces: Vec<Piece>,
     /// The primitives whose surfaces the curve lies on; one where no second one is known.
     pub primitives: Vec<PrimitiveId>,
-    /// How many points of traced pieces Newton's method could not put on both surfaces: they stay
-    /// where the mesh has them.
+    /// How many points of the mesh Newton's method could not put on both surfaces: they are left
+    /// out.
     pub unsolved: usize,
 }
 
@@ -108,7 +112,8 @@ impl Curves {
             primitives.sort_unstable();
             primitives.dedup();
             let near = vertex.position();
-            let solved = Meet::new(solid, &primitives).solve(near, local_size(vertex));
+            let reach = guide::REACH * local_size(vertex, solid);
+            let solved = Meet::new(solid, &primitives).solve(near, reach);
             if solved.is_none() {
                 this.unsolved_vertices.push(key);
             }
@@ -122,12 +127,40 @@ impl Curves {
     }
 }
 
-/// Length of the longest mesh edge at a vertex: how far it may be moved.
-fn local_size(vertex: VertexView<'_>) -> f64 {
+/// The point on all these primitives that is nearest to a point, at most `reach` away.
+pub(crate) fn meeting_point(
+    solid: &Solid,
+    primitives: &[PrimitiveId],
+    near: DVec3,
+    reach: f64,
+) -> Option<DVec3> {
+    Meet::new(solid, primitives).solve(near, reach)
+}
+
+/// Largest distance of a point from these primitives, to first order, in model units.
+pub(crate) fn distance(solid: &Solid, primitives: &[PrimitiveId], at: DVec3) -> f64 {
+    Meet::new(solid, primitives).distance(at)
+}
+
+/// The point where all these primitives touch each other, at most `reach` away.
+pub(crate) fn touching_point(
+    solid: &Solid,
+    primitives: &[PrimitiveId],
+    near: DVec3,
+    reach: f64,
+) -> Option<DVec3> {
+    Meet::new(solid, primitives).touching_point(near, reach)
+}
+
+/// Length of the longest mesh edge at a vertex, at least what rounding may make: how far it may be
+/// moved.
+fn local_size(vertex: VertexView<'_>, solid: &Solid) -> f64 {
+    const LEAST: f64 = 1e-8;
+    let least = LEAST * solid.domain.size();
     vertex
         .ring()
         .map(|h| h.vector().length())
-        .fold(0.0, f64::max)
+        .fold(least, f64::max)
 }
 
 /// What the mesh knows of an edge.
@@ -156,7 +189,10 @@ impl Chain {
             solved.unwrap_or_else(|| vertex.position())
         };
         let points: Vec<DVec3> = chain.iter().map(position).collect();
-        let reach = chain.iter().map(|&vertex| local_size(vertex)).collect();
+        let reach = chain
+            .iter()
+            .map(|&vertex| local_size(vertex, solid))
+            .collect();
         let mut primitives = edge
             .faces
             .map(|face| groups.faces[face.0 as usize].primitive)
@@ -182,23 +218,19 @@ impl Chain {
         {
             // Closed edges begin anywhere: begin at a corner.
             self.turn(last);
-        } else if self.is_closed
-            && let Some(start) = meet.solve(self.points[0], self.reach[0])
-        {
-            let last = self.points.len() - 1;
-            self.points[0] = start;
-            self.points[last] = start;
+        } else if self.is_closed {
+            self.start_on_curve(meet);
         }
         let mut unsolved = 0;
         let pieces = self
             .pieces(corners)
-            .iter()
-            .map(|chain| {
+            .into_iter()
+            .map(|mut chain| {
+                unsolved += chain.settle(meet);
                 let ends = [chain.points[0], chain.points[chain.points.len() - 1]];
-                let form = closed_form::find(solid, &primitives, chain);
+                let form = closed_form::find(solid, &primitives, &chain);
                 let (curve, range) = form.unwrap_or_else(|| {
-                    let (points, missed) = trace::along(meet, chain, chord_error);
-                    unsolved += missed;
+                    let points = trace::at(meet, &chain.points, chord_error);
                     let last = (points.len() - 1) as f64;
                     (Curve::Traced { points }, [0.0, last])
                 });
@@ -216,37 +248,51 @@ impl Chain {
     fn corners(&self, meet: Meet<'_>) -> Vec<(DVec3, usize)> {
         /// Sine below which a touching point may be near.
         const SUSPICIOUS: f64 = 0.3;
-        let slants: Vec<f64> = self.points.iter().map(|&at| meet.slant_at(at)).collect();
+        let near = |at: usize| guide::REACH * self.reach[at];
+        let slant = |(at, &point): (usize, &DVec3)| {
+            meet.slant_at(meet.solve(point, near(at)).unwrap_or(point))
+        };
+        let slants: Vec<f64> = self.points.iter().enumerate().map(slant).collect();
         // Surfaces may also touch all along.
         if slants.iter().all(|&slant| slant < meet::TOUCHING) {
             return Vec::new();
         }
         let last = self.points.len() - 1;
         let mut corners: Vec<(DVec3, usize)> = Vec::new();
-        for at in 0..last {
-            let before = match (at, self.is_closed) {
-                (0, true) => last - 1,
-                (0, false) => continue,
-                _ => at - 1,
-            };
-            let lowest = slants[at] <= slants[before] && slants[at] <= slants[at + 1];
-            if !lowest || slants[at] > SUSPICIOUS {
+        for (at, &point) in self.points.iter().enumerate() {
+            let is_near = |corner: DVec3| corner.distance(point) <= near(at);
+            if slants[at] > SUSPICIOUS || corners.iter().any(|&(corner, _)| is_near(corner)) {
                 continue;
             }
-            let reach = 4.0 * self.reach[at];
-            let Some(corner) = meet.touching_point(self.points[at], reach) else {
+            let Some(corner) = meet.touching_point(point, near(at)) else {
                 continue;
             };
+            let distance = |&at: &usize| self.points[at].distance(corner);
+            let nearest = (0..last).min_by(|a, b| distance(a).total_cmp(&distance(b)));
+            let nearest = nearest.unwrap_or(0);
             let ends = [self.points[0], self.points[last]];
-            let is_end = !self.is_closed && ends.iter().any(|end| end.distance(corner) <= reach);
-            let is_known = corners
-                .iter()
-                .any(|(other, _)| other.distance(corner) <= reach);
+            let is_end = !self.is_closed
+                && ends
+                    .iter()
+                    .any(|&end| end.distance(corner) <= near(nearest));
+            let is_known = corners.iter().any(|&(_, other)| other == nearest);
             if !is_end && !is_known {
-                corners.push((corner, at));
+                corners.push((corner, nearest));
             }
         }
+        corners.sort_unstable_by_key(|&(_, at)| at);
         corners
+    }
+
+    /// Lets a closed chain begin at a point of the curve: the image of its first point that has one.
+    fn start_on_curve(&mut self, meet: Meet<'_>) {
+        let last = self.points.len() - 1;
+        let image = |at: usize| meet.solve(self.points[at], guide::REACH * self.reach[at]);
+        if let Some((first, start)) = (0..last).find_map(|at| Some((at, image(at)?))) {
+            self.turn(first);
+            self.points[0] = start;
+            self.points[last] = start;
+        }
     }
 
     /// Lets a closed chain begin at one of its points.

@@ -33,6 +33,7 @@ mod curve;
 mod edges;
 mod error;
 mod euler;
+mod exact;
 mod geometry;
 mod group;
 mod inspect;
@@ -55,9 +56,10 @@ pub mod simplify;
 #[cfg(test)]
 mod samples;
 
-pub use curve::{Curve, Curves, EdgeCurve, Piece};
+pub use curve::{Curve, Curves, EdgeCurve, Piece, Spline};
 pub use error::Error;
 pub use euler::EulerCharacteristic;
+pub use exact::{Crumbs, ExactBrep, ExactEdge, ExactFace, ExactShell};
 pub use group::{Edge, Face, FaceId, Groups};
 pub use inspect::{DefectKind, Example, Inspection, Tally};
 pub use join::join_equal;

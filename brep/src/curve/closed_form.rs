@@ -13,9 +13,9 @@ use std::f64::consts::{PI, TAU};
 
 /// Largest distance of a curve from its surfaces, relative to the domain.
 const ON_SURFACE: f64 = 1e-11;
-/// Largest distance of solved points of the chain from the curve, relative to the domain.
+/// Largest distance of the chain's points from the curve, relative to the domain.
 const ON_CURVE: f64 = 1e-8;
-/// How many points of the chain are solved.
+/// How many points of the chain are used for candidates.
 const SAMPLES: usize = 12;
 
 /// The closed form of an edge's curve, and its range.
@@ -46,23 +46,18 @@ pub(super) fn find(
         .find_map(|candidate| search.accept(&candidate))
 }
 
-/// Points of the chain, in order, that are on both surfaces.
+/// Some of the chain's points, in order.
 fn samples(meet: Meet<'_>, chain: &Chain) -> Vec<DVec3> {
     let last = chain.points.len() - 1;
     let count = SAMPLES.min(last);
-    let mut samples: Vec<DVec3> = (0..=count)
-        .filter_map(|k| {
-            let at = k * last / count;
-            meet.solve(chain.points[at], chain.reach[at])
-        })
-        .collect();
     // A chain of one mesh edge has nothing but its ends.
     if last == 1 {
         let [a, b] = [chain.points[0], chain.points[1]];
         let middle = meet.solve(a.midpoint(b), 0.5 * a.distance(b));
-        samples.splice(1.min(samples.len())..1.min(samples.len()), middle);
+        return [Some(a), middle, Some(b)].into_iter().flatten().collect();
     }
-    samples
+    let at = |k| chain.points[k * last / count];
+    (0..=count).map(at).collect()
 }
 
 struct Search<'a> {
@@ -226,19 +221,8 @@ impl Search<'_> {
     fn accept(&self, candidate: &Curve) -> Option<(Curve, [f64; 2])> {
         let size = self.solid.domain.size();
         let off = |point: DVec3| candidate.point(candidate.parameter(point)).distance(point);
-        if self
-            .samples
-            .iter()
-            .any(|&point| off(point) > ON_CURVE * size)
-        {
-            return None;
-        }
-        let points = &self.chain.points;
-        let (ends, last) = ([0, points.len() - 1], points.len() - 1);
-        if ends.iter().any(|&at| off(points[at]) > ON_CURVE * size) {
-            return None;
-        }
-        if (1..last).any(|at| off(points[at]) > self.chain.reach[at]) {
+        let mut points = self.samples.iter().chain(&self.chain.points);
+        if points.any(|&point| off(point) > ON_CURVE * size) {
             return None;
         }
         let (curve, range) = self.oriented(candidate)?;

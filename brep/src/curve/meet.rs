@@ -53,6 +53,12 @@ impl<'a> Meet<'a> {
         Some(domain.from_centered(touched.or(plain)?))
     }
 
+    /// Largest distance from the surfaces, to first order, in model units.
+    pub(super) fn distance(self, at: DVec3) -> f64 {
+        let domain = &self.solid.domain;
+        self.residual(domain.to_centered(at)) * domain.half_size()
+    }
+
     /// Largest distance from the surfaces, to first order, relative to the domain.
     fn residual(self, at: DVec3) -> f64 {
         self.polynomials()

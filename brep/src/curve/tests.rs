@@ -18,21 +18,41 @@ struct Found {
     curves: Curves,
 }
 
+/// Curves and positions do not depend on the mesh from which they are found.
+const RULES: [Rule; 4] = [
+    Rule::Tolerance(0.02),
+    Rule::Tolerance(0.005),
+    Rule::Topology { finest: 0.01 },
+    Rule::Tolerance(0.3),
+];
+
 fn curves(make: impl FnOnce(&mut ModelBuilder) -> NodeId) -> Found {
+    let found = from_all_meshes(make);
+    for (other, rule) in found.iter().zip(RULES) {
+        assert_eq!(kinds(other), kinds(&found[0]), "{rule:?}");
+    }
+    let [first, ..] = found;
+    first
+}
+
+fn from_all_meshes(make: impl FnOnce(&mut ModelBuilder) -> NodeId) -> [Found; 4] {
     let mut builder = ModelBuilder::new();
     let root = make(&mut builder);
-    let solid = Solid::build(&builder.finish(root), None).expect("bounded");
-    let outcome = subdiv::convert(&solid, &Settings::new(Rule::Tolerance(0.02)), &());
-    let fragments = outcome.expect("a subdivision").fragments;
-    let stitched = crate::stitch(&fragments).expect("closed");
-    let brep = stitched.validate().expect("valid");
-    let groups = Groups::of(&brep);
-    let curves = Curves::of(&brep, &groups, &solid, 1e-4);
-    Found {
-        solid,
-        groups,
-        curves,
-    }
+    let model = builder.finish(root);
+    RULES.map(|rule| {
+        let solid = Solid::build(&model, None).expect("bounded");
+        let outcome = subdiv::convert(&solid, &Settings::new(rule), &());
+        let fragments = outcome.expect("a subdivision").fragments;
+        let stitched = crate::stitch(&fragments).expect("closed");
+        let brep = stitched.validate().expect("valid");
+        let groups = Groups::of(&brep);
+        let curves = Curves::of(&brep, &groups, &solid, 1e-4);
+        Found {
+            solid,
+            groups,
+            curves,
+        }
+    })
 }
 
 fn pieces(found: &Found) -> impl Iterator<Item = &Piece> {
@@ -212,7 +232,7 @@ fn corners_of_a_tilted_box_lie_where_three_planes_meet() {
 #[test]
 fn a_cylinder_that_touches_a_box_has_tangent_lines() {
     // A slot: the box's sides continue in the cylinder.
-    let found = curves(|b| {
+    let all = from_all_meshes(|b| {
         let part = Shape::block(DVec3::new(-1.0, -0.5, -0.3), DVec3::new(0.0, 0.5, 0.3));
         let part = b.add(Node::Shape(part.expect("a box")));
         let round = cylinder(b, 0.5, 0.3);
@@ -222,10 +242,24 @@ fn a_cylinder_that_touches_a_box_has_tangent_lines() {
         let [a, b] = edge.ends;
         a.distance(b) > 0.1 && (a - b).cross(DVec3::Z).length() < 1e-9 && a.x.abs() < 1e-9
     };
-    let mut sides = [0, 0];
-    for edge in pieces(&found).filter(is_upright) {
-        assert!(matches!(edge.curve, Curve::Line { .. }), "{edge:?}");
-        sides[usize::from(edge.ends[0].y > 0.0)] += 1;
+    for found in &all {
+        let mut sides = [0, 0];
+        for edge in pieces(found).filter(is_upright) {
+            assert!(matches!(edge.curve, Curve::Line { .. }), "{edge:?}");
+            sides[usize::from(edge.ends[0].y > 0.0)] += 1;
+        }
+        assert!(sides.iter().all(|&count| count > 0), "{sides:?}");
     }
-    assert!(sides.iter().all(|&count| count > 0), "{sides:?}");
+}
+
+#[test]
+fn a_rounded_cube_has_six_circles() {
+    let found = curves(|b| {
+        let cube = Shape::block(DVec3::splat(-1.0), DVec3::splat(1.0)).expect("a cube");
+        let cube = b.add(Node::Shape(cube));
+        let ball = sphere(b, 1.35);
+        b.add(Node::Intersection(vec![cube, ball]))
+    });
+    check(&found);
+    assert_eq!(kinds(&found), "CCCCCC");
 }

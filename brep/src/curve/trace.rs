@@ -1,45 +1,13 @@
 //! Curves without a closed form, as points on both surfaces.
 
-use super::Chain;
 use super::meet::Meet;
 use glam::DVec3;
 
 /// Halvings of a chord: 2¹² points between two of the mesh.
 const DEPTH: usize = 12;
 
-/// The chain's points moved onto the surfaces and spaced by a chord error, and how many of them
-/// could not be moved.
-pub(super) fn along(meet: Meet<'_>, chain: &Chain, chord_error: f64) -> (Vec<DVec3>, usize) {
-    let last = chain.points.len() - 1;
-    let mut unsolved = 0;
-    let mut points: Vec<DVec3> = Vec::with_capacity(chain.points.len());
-    for (at, &point) in chain.points.iter().enumerate() {
-        if at == 0 || at == last {
-            points.push(point);
-            continue;
-        }
-        let solved = meet.solve(point, chain.reach[at]);
-        unsolved += usize::from(solved.is_none());
-        let solved = solved.unwrap_or(point);
-        // Points of the mesh can be so close to each other that they change places.
-        let before = points[points.len() - 1];
-        let ahead = chain.points[at + 1] - chain.points[at - 1];
-        if (solved - before).dot(ahead) > 0.0 {
-            points.push(solved);
-        }
-    }
-    let end = points.len() - 1;
-    if end > 0 {
-        points.dedup();
-    }
-    if points.len() < 2 {
-        points = vec![chain.points[0], chain.points[last]];
-    }
-    (at(meet, &points, chord_error), unsolved)
-}
-
-/// The same curve with as few of these points as the chord error needs, and more where they do
-/// not suffice.
+/// The curve through these points of it, with as few of them as the chord error needs, and more
+/// where they do not suffice.
 pub(super) fn at(meet: Meet<'_>, points: &[DVec3], chord_error: f64) -> Vec<DVec3> {
     let fine = refined(meet, points, chord_error);
     thinned(&fine, chord_error)

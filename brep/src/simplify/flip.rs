@@ -4,22 +4,27 @@ use crate::topology::{Brep, FacetKey, FacetView, HalfEdgeKey, HalfEdgeView};
 use glam::DVec3;
 use robust::{Coord, orient2d};
 
-/// Removes facets whose corners are three different points of one line, by giving the space
-/// across their longest edge the middle corner; returns how many, and how many flat ones stay.
-pub(super) fn flip_flat_facets(brep: &mut Brep) -> (usize, usize) {
+/// Removes facets no higher than this over their longest edge – of none at all, if their corners
+/// are three different points of one line – by giving the space across that edge the middle corner;
+/// returns how many, and how many flat ones stay.
+pub(super) fn flip_flat_facets(brep: &mut Brep, height: f64) -> (usize, usize) {
     let mut pending: Vec<FacetKey> = brep
         .facets()
-        .filter(|facet| are_collinear(facet.positions()))
+        .filter(|facet| is_flat(facet.positions(), height))
         .map(FacetView::key)
         .collect();
     let mut flipped = 0;
     loop {
         let before = flipped;
         pending.retain(|&key| {
+            // Another flip may have changed it.
+            if !is_flat(brep.facet(key).positions(), height) {
+                return false;
+            }
             let Some(long) = long_edge(brep, key) else {
                 return true;
             };
-            let possible = may_flip(brep.half_edge(long));
+            let possible = may_flip(brep.half_edge(long), height);
             if possible {
                 flip(brep, long);
                 flipped += 1;
@@ -46,7 +51,7 @@ fn long_edge(brep: &Brep, facet: FacetKey) -> Option<HalfEdgeKey> {
         .map(HalfEdgeView::key)
 }
 
-fn may_flip(long: HalfEdgeView<'_>) -> bool {
+fn may_flip(long: HalfEdgeView<'_>, height: f64) -> bool {
     let [a, b] = [long.origin(), long.target()];
     let middle = long.prev().origin();
     let apex = long.twin().prev().origin();
@@ -56,7 +61,7 @@ fn may_flip(long: HalfEdgeView<'_>) -> bool {
         .any(|spoke| spoke.target().key() == apex.key());
     let flat_after = [a, b]
         .iter()
-        .any(|end| are_collinear([middle.position(), end.position(), apex.position()]));
+        .any(|end| is_flat([middle.position(), end.position(), apex.position()], height));
     degrees_stay && middle.key() != apex.key() && !joined && !flat_after
 }
 
@@ -95,6 +100,16 @@ fn flip(brep: &mut Brep, long: HalfEdgeKey) {
     brep.half_edges[twin].origin = middle;
     brep.vertices[a].outgoing = from_a;
     brep.vertices[b].outgoing = from_b;
+}
+
+/// Whether a triangle is no higher than this over its longest side.
+fn is_flat(corners: [DVec3; 3], height: f64) -> bool {
+    if height == 0.0 {
+        return are_collinear(corners);
+    }
+    let [a, b, c] = corners;
+    let longest = (b - a).length().max((c - b).length()).max((a - c).length());
+    (b - a).cross(c - a).length() <= height * longest
 }
 
 /// Whether three points lie on one line, exactly: their projections along all axes do.

@@ -36,7 +36,6 @@ pub struct Simplified {
 /// # Errors
 /// Never for meshes within the guarantees; the result is validated again all the same.
 pub fn remove_degenerate(brep: Valid<Brep>) -> Result<(Valid<Brep>, Simplified), Defects> {
-    let mut brep = brep.into_inner();
     let [low, high] = brep
         .vertices()
         .map(VertexView::position)
@@ -44,12 +43,43 @@ pub fn remove_degenerate(brep: Valid<Brep>) -> Result<(Valid<Brep>, Simplified),
             [low.min(p), high.max(p)]
         });
     let reach = NO_LENGTH * (high - low).max_element().max(0.0);
+    remove(brep, reach, 0.0)
+}
+
+/// Removes edges no longer than `size`, in model units, and facets no higher than it over their
+/// longest edge, wherever topology allows.
+///
+/// # Errors
+/// Never; the result is validated again all the same.
+pub fn remove_small(brep: Valid<Brep>, size: f64) -> Result<(Valid<Brep>, Simplified), Defects> {
+    let (brep, first) = remove(brep, size, size)?;
+    if first.flipped_edges == 0 {
+        return Ok((brep, first));
+    }
+    // Flips make new edges, some of which are short.
+    let (brep, second) = remove(brep, size, size)?;
+    let counts = Simplified {
+        collapsed_edges: first.collapsed_edges + second.collapsed_edges,
+        longest_collapsed: first.longest_collapsed.max(second.longest_collapsed),
+        flipped_edges: first.flipped_edges + second.flipped_edges,
+        ..second
+    };
+    Ok((brep, counts))
+}
+
+/// Collapses edges up to `reach`, and flips away facets up to `height`; zero is exact.
+fn remove(
+    brep: Valid<Brep>,
+    reach: f64,
+    height: f64,
+) -> Result<(Valid<Brep>, Simplified), Defects> {
+    let mut brep = brep.into_inner();
     let collapse::Collapsed {
         count: collapsed_edges,
         longest: longest_collapsed,
         remaining: remaining_edges,
     } = collapse::collapse_short_edges(&mut brep, reach);
-    let (flipped_edges, remaining_facets) = flip::flip_flat_facets(&mut brep);
+    let (flipped_edges, remaining_facets) = flip::flip_flat_facets(&mut brep, height);
     let counts = Simplified {
         collapsed_edges,
         longest_collapsed,

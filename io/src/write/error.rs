@@ -39,6 +39,26 @@ pub enum Error {
     /// A GLB file could not be put together.
     #[error("cannot write the output")]
     Glb(#[source] gltf::Error),
+    /// A STEP file could not be put together.
+    #[error("cannot describe the solid in STEP: {reason}")]
+    Step {
+        /// What is wrong with which entity.
+        reason: String,
+    },
+    /// A cavity that no solid encloses.
+    #[error("a cavity lies in no solid, which STEP cannot say; a smaller tolerance may help")]
+    StrayVoid,
+    /// Facets that readers of STEP would take for lines.
+    #[error(
+        "{count} facets are thinner than {size:e}, which STEP readers would not see; another \
+         tolerance may help"
+    )]
+    ThinFacets {
+        /// How many.
+        count: usize,
+        /// Smallest size, in model units.
+        size: f64,
+    },
     /// A picture could not be encoded.
     #[error("cannot encode the picture")]
     Png(#[from] png::EncodingError),

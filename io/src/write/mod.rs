@@ -16,6 +16,7 @@ pub mod obj;
 pub mod page;
 pub mod picture;
 pub mod ply;
+pub mod step;
 pub mod stl;
 pub mod threemf;
 

@@ -31,6 +31,18 @@ impl Unit {
         }
     }
 
+    /// Its length in millimetres.
+    pub fn millimetres(self) -> f64 {
+        match self {
+            Self::Micron => 1e-3,
+            Self::Millimetre => 1.0,
+            Self::Centimetre => 10.0,
+            Self::Inch => 25.4,
+            Self::Foot => 304.8,
+            Self::Metre => 1000.0,
+        }
+    }
+
     /// Its name as 3MF spells it.
     pub fn name(self) -> &'static str {
         match self {

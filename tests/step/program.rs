@@ -1,0 +1,90 @@
+//! What the program says and does about STEP files.
+
+use serde_json::Value;
+use std::fs;
+use std::path::Path;
+use tempfile::TempDir;
+
+use crate::opencascade::{StepFile, python};
+
+fn csg2brep() -> assert_cmd::Command {
+    assert_cmd::cargo::cargo_bin_cmd!("csg2brep")
+}
+
+fn model(folder: &TempDir, name: &str, text: &str) -> std::path::PathBuf {
+    let path = folder.path().join(name);
+    fs::write(&path, text).unwrap();
+    path
+}
+
+fn convert(model: &Path, step: &Path, options: &[&str]) -> assert_cmd::assert::Assert {
+    let mut command = csg2brep();
+    command
+        .arg(model)
+        .arg("-o")
+        .arg(step)
+        .args(options)
+        .assert()
+}
+
+#[test]
+fn units_names_and_colours_are_in_the_file() {
+    let folder = TempDir::new().unwrap();
+    let text = "color([1,0,0]) cube(1); color([0,0,1,0.25]) multmatrix([[1,0,0,3],[0,1,0,0],\
+                [0,0,1,0],[0,0,0,1]]) sphere(r=1);";
+    let model = model(&folder, "two parts.csg", text);
+    let step = folder.path().join("a.step");
+    for (unit, millimetres) in [("mm", 1.0_f64), ("cm", 10.0), ("in", 25.4), ("m", 1000.0)] {
+        convert(&model, &step, &["--unit", unit, "-q"]).success();
+        let file = &python::<StepFile>(&[step.to_str().unwrap()])[0];
+        let expected = [4.0 / 3.0 * std::f64::consts::PI, 1.0];
+        assert_eq!(file.solids.len(), 2);
+        for (solid, volume) in file.solids.iter().zip(expected) {
+            let volume = volume * millimetres.powi(3);
+            assert!(
+                (solid.volume - volume).abs() <= 1e-9 * volume,
+                "{unit}: {solid:?}"
+            );
+            assert!(solid.valid);
+        }
+        let text = fs::read_to_string(&step).unwrap();
+        for entity in [
+            "PRODUCT('two parts'",
+            "MANIFOLD_SOLID_BREP('solid 1'",
+            "MANIFOLD_SOLID_BREP('solid 2'",
+            "COLOUR_RGB('',1.,0.,0.)",
+            "COLOUR_RGB('',0.,0.,1.)",
+            "SURFACE_STYLE_TRANSPARENT(7.5E-1)",
+        ] {
+            assert!(text.contains(entity), "{entity}");
+        }
+    }
+}
+
+#[test]
+fn facets_instead_of_surfaces_are_told_and_fail_strict_runs() {
+    let folder = TempDir::new().unwrap();
+    let text = "polynomial(\"x^4 + y^4 + z^4 - 1\"); multmatrix([[1,0,0,5],[0,1,0,0],[0,0,1,0],[0,0,0,1]]) cube(1);";
+    let model = model(&folder, "quartic.csg", text);
+    let step = folder.path().join("a.step");
+    let report = folder.path().join("a.json");
+    let options = ["--tolerance", "2%", "--report", report.to_str().unwrap()];
+    let output = convert(&model, &step, &options).success();
+    let said = String::from_utf8(output.get_output().stderr.clone()).unwrap();
+    assert!(
+        said.contains("1 of 2 solids is written as plane facets"),
+        "{said}"
+    );
+    let report: Value = serde_json::from_slice(&fs::read(report).unwrap()).unwrap();
+    assert_eq!(report["step"]["solids"], 2);
+    assert_eq!(report["step"]["faces"], 6);
+    let faceted = report["step"]["faceted"].as_array().unwrap();
+    assert_eq!(faceted.len(), 1);
+    assert!(faceted[0]["reason"].as_str().unwrap().contains("degree 4"));
+    convert(&model, &step, &["--tolerance", "2%", "--strict"]).code(3);
+    let file = &python::<StepFile>(&[step.to_str().unwrap()])[0];
+    assert!(
+        file.solids.len() == 2 && file.solids.iter().all(|solid| solid.valid),
+        "{file:?}"
+    );
+}
