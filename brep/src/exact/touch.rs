@@ -339,12 +339,15 @@ impl Raw {
                             },
                         ) => {
                             // Around the axis the loops of a face cancel each other.
-                            let turns =
+                            let [t, leave, stay] =
                                 [&ring, &leaving[0], &stays].map(|r| self.turns(r, center, axis));
-                            match turns {
-                                [t, a, b] if a != 0.0 && t == -a && t == b => Some(true),
-                                [t, a, b] if b != 0.0 && t == -b && t == a => Some(false),
-                                _ => None,
+                            let is = |a: f64, b: f64| (a - b).abs() < 0.5;
+                            if !is(t, 0.0) && is(t, -leave) && is(t, stay) {
+                                Some(true)
+                            } else if !is(t, 0.0) && is(t, -stay) && is(t, leave) {
+                                Some(false)
+                            } else {
+                                None
                             }
                         }
                         _ => None,
