@@ -74,6 +74,7 @@ pub(crate) fn read(job: &Job, bytes: &[u8], format: Format) -> Result<(Fragments
         clipped: false,
         nearly_equal: Vec::new(),
         imprecise: Vec::new(),
+        known_boundary: None,
     };
     Ok((fragments, solid))
 }

@@ -9,7 +9,7 @@ use crate::report::Report;
 use crate::run::Job;
 use crate::summary::{counted, significant};
 use crate::talk::Talk;
-use brep::simplify::remove_degenerate;
+use brep::simplify::{contract_knots, remove_degenerate};
 use brep::{Brep, Groups, IfTroubled, Properties, Quality, Retriangulated, Shells, Valid};
 use csg::{PrimitiveId, Solid};
 use io::read::format::Format;
@@ -312,7 +312,11 @@ fn merge(brep: Valid<Brep>, solid: &Solid) -> Result<(Valid<Brep>, Retriangulate
 
 fn without_degenerate(brep: Valid<Brep>) -> Result<(Valid<Brep>, f64), Failure> {
     let (clean, counts) = remove_degenerate(brep).map_err(|defects| bug(&defects))?;
-    Ok((clean, counts.longest_collapsed))
+    if counts.remaining_edges == 0 {
+        return Ok((clean, counts.longest_collapsed));
+    }
+    let (plain, _) = contract_knots(clean).map_err(|defects| bug(&defects))?;
+    Ok((plain, counts.longest_collapsed))
 }
 
 fn bug(defects: &brep::Defects) -> Failure {

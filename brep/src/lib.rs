@@ -68,7 +68,7 @@ pub use quality::Quality;
 pub use shells::{Shell, ShellId, ShellRole, Shells, Solid};
 pub use smooth::{Corner, CornerId, Corners, Shading};
 pub use stitch::{check_manifold, stitch};
-pub use tessellate::{Fit, IfTroubled, Tessellated, tessellate};
+pub use tessellate::{Fit, IfTroubled, Tessellated, passes_through_itself, tessellate};
 pub use topology::{
     Brep, Facet, FacetKey, FacetView, HalfEdge, HalfEdgeKey, HalfEdgeView, Vertex, VertexKey,
     VertexView,

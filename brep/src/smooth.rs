@@ -211,6 +211,7 @@ mod tests {
             clipped: false,
             nearly_equal: Vec::new(),
             imprecise: Vec::new(),
+            known_boundary: None,
         };
         let brep = stitch(&sphere(1))
             .expect("closed")

@@ -34,6 +34,7 @@ use crate::group::{FaceId, Groups};
 use crate::topology::Brep;
 use crate::triangulate::retriangulate;
 use crate::validate::Valid;
+pub use crossings::passes_through_itself;
 use csg::{PrimitiveId, Solid};
 pub use fit::Fit;
 use glam::DVec3;

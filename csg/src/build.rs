@@ -1,6 +1,7 @@
 //! From a model to a solid: survey, extent, domain, half-spaces, interning, simplification.
 
 use crate::extent::extent;
+use crate::facets::RootFacets;
 use crate::intern::{Interned, intern};
 use crate::lower::{Half, Lowered, Region, Token};
 use crate::matrix::{Bounded, IDENTITY};
@@ -62,6 +63,12 @@ impl Solid {
         if let Some(clip) = &clip {
             intersect(&mut lowered, clip, &domain)?;
         }
+        // Its planes come last; the formula does not name these copies of them.
+        let given = RootFacets::of(model).filter(|_| clip.is_none());
+        let first_given = lowered.halves.len();
+        if let Some(given) = &given {
+            lowered.halves.extend(given.halves(&to_model(&domain))?);
+        }
         let mut interned = intern(&lowered.halves)?;
         if clip.is_none() && !imprecise(&interned.primitives)?.is_empty() {
             // Outside of its extent noise could make the solid reach the domain's walls.
@@ -78,7 +85,18 @@ impl Solid {
             Simplified::Constant { all: false } => return Ok(Self::empty(model, clip.is_some())),
             Simplified::Constant { all: true } => return Err(Error::Unbounded),
         };
-        let (nodes, primitives, nearly_equal) = used_only(nodes, interned);
+        // Facets may be too small for the formula to name their planes.
+        let planes = interned.of_half.get(first_given..).unwrap_or_default();
+        let planes: Vec<PrimitiveId> = planes.iter().map(|(plane, _)| *plane).collect();
+        let used = used_only(nodes, &planes, &mut interned);
+        let known_boundary =
+            given.and_then(|given| given.boundary(&interned.of_half, first_given, &used.renamed));
+        let Used {
+            nodes,
+            primitives,
+            nearly_equal,
+            ..
+        } = used;
         let Some(formula) = Formula::new(nodes) else {
             return Ok(Self::empty(model, clip.is_some()));
         };
@@ -90,7 +108,12 @@ impl Solid {
             formula,
             materials: model.materials().to_vec(),
             clipped: clip.is_some(),
-            nearly_equal,
+            // Nothing depends on where the planes of a known boundary meet.
+            nearly_equal: match known_boundary {
+                Some(_) => Vec::new(),
+                None => nearly_equal,
+            },
+            known_boundary,
         })
     }
 
@@ -109,6 +132,7 @@ impl Solid {
             clipped,
             nearly_equal: Vec::new(),
             imprecise: Vec::new(),
+            known_boundary: None,
         }
     }
 }
@@ -160,28 +184,41 @@ fn intersect(lowered: &mut Lowered, clip: &Aabb, domain: &Domain) -> Result<(), 
     Ok(())
 }
 
-/// Drops primitives that the formula does not need and numbers the rest by first occurrence.
-fn used_only(
-    mut nodes: Vec<FormulaNode>,
-    interned: Interned,
-) -> (Vec<FormulaNode>, Vec<Primitive>, Vec<NearlyEqual>) {
-    let mut known: Vec<Option<Primitive>> = interned.primitives.into_iter().map(Some).collect();
+/// What of the interned primitives a formula needs.
+struct Used {
+    nodes: Vec<FormulaNode>,
+    primitives: Vec<Primitive>,
+    nearly_equal: Vec<NearlyEqual>,
+    /// By old number.
+    renamed: Vec<Option<PrimitiveId>>,
+}
+
+/// Drops primitives that neither the formula needs nor `others` name, and numbers the rest by first
+/// occurrence.
+fn used_only(mut nodes: Vec<FormulaNode>, others: &[PrimitiveId], interned: &mut Interned) -> Used {
+    let all = std::mem::take(&mut interned.primitives);
+    let mut known: Vec<Option<Primitive>> = all.into_iter().map(Some).collect();
     let mut renamed: Vec<Option<PrimitiveId>> = vec![None; known.len()];
     let mut primitives = Vec::new();
-    for node in &mut nodes {
-        let FormulaNode::Literal(literal) = node else {
-            continue;
-        };
-        let old = literal.primitive.0 as usize;
+    let mut rename = |PrimitiveId(old): PrimitiveId| {
+        let old = old as usize;
         if let Some(primitive) = known[old].take() {
             renamed[old] = Some(PrimitiveId(
                 u32::try_from(primitives.len()).unwrap_or(u32::MAX),
             ));
             primitives.push(primitive);
         }
-        if let Some(id) = renamed[old] {
+        renamed[old]
+    };
+    for node in &mut nodes {
+        if let FormulaNode::Literal(literal) = node
+            && let Some(id) = rename(literal.primitive)
+        {
             literal.primitive = id;
         }
+    }
+    for other in others {
+        rename(*other);
     }
     let pair = |pair: &NearlyEqual| {
         let first = renamed[pair.first.0 as usize]?;
@@ -193,5 +230,10 @@ fn used_only(
         })
     };
     let nearly_equal = interned.nearly_equal.iter().filter_map(pair).collect();
-    (nodes, primitives, nearly_equal)
+    Used {
+        nearly_equal,
+        nodes,
+        primitives,
+        renamed,
+    }
 }

@@ -4,7 +4,9 @@
 //! interned primitives. Nodes live in one arena and refer to nodes that stand before them, so a
 //! model of any depth is built, walked and dropped without recursion.
 
-use crate::{Material, MaterialId, Shape, Transform};
+use crate::{Facets, Material, MaterialId, Shape, Transform};
+use std::collections::{BTreeMap, BTreeSet};
+use std::sync::Arc;
 
 /// Index of a node in a [`Model`].
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Debug)]
@@ -41,6 +43,7 @@ pub enum Node {
 pub struct Model {
     nodes: Vec<Node>,
     materials: Vec<Material>,
+    facets: BTreeMap<NodeId, Arc<Facets>>,
     root: NodeId,
 }
 
@@ -49,6 +52,7 @@ pub struct Model {
 pub struct ModelBuilder {
     nodes: Vec<Node>,
     materials: Vec<Material>,
+    facets: BTreeMap<NodeId, Arc<Facets>>,
 }
 
 impl Default for ModelBuilder {
@@ -64,6 +68,7 @@ impl ModelBuilder {
         Self {
             nodes: Vec::new(),
             materials: vec![Material { color: None }],
+            facets: BTreeMap::new(),
         }
     }
 
@@ -71,6 +76,11 @@ impl ModelBuilder {
     pub fn add(&mut self, node: Node) -> NodeId {
         self.nodes.push(node);
         NodeId(u32::try_from(self.nodes.len() - 1).unwrap_or(u32::MAX))
+    }
+
+    /// Says of a node added before which mesh bounds it.
+    pub fn bound(&mut self, node: NodeId, by: Facets) {
+        self.facets.insert(node, Arc::new(by));
     }
 
     /// A node added before.
@@ -92,7 +102,7 @@ impl ModelBuilder {
     /// A node with all that it is made of, as a model of its own.
     #[must_use]
     pub fn subtree(&self, root: NodeId) -> Model {
-        let mut needed = std::collections::BTreeSet::new();
+        let mut needed = BTreeSet::new();
         let mut waiting = vec![root];
         while let Some(id) = waiting.pop() {
             if !needed.insert(id) {
@@ -109,8 +119,9 @@ impl ModelBuilder {
             }
         }
         // Children come before parents here as there.
-        let mut renumbered = std::collections::BTreeMap::new();
+        let mut renumbered = BTreeMap::new();
         let mut nodes = Vec::with_capacity(needed.len());
+        let mut facets = BTreeMap::new();
         for id in needed {
             let Some(mut node) = self.nodes.get(id.index()).cloned() else {
                 continue;
@@ -127,13 +138,18 @@ impl ModelBuilder {
                 }
                 Node::Shape(_) => {}
             }
-            renumbered.insert(id, NodeId(u32::try_from(nodes.len()).unwrap_or(u32::MAX)));
+            let renamed = NodeId(u32::try_from(nodes.len()).unwrap_or(u32::MAX));
+            if let Some(known) = self.facets.get(&id) {
+                facets.insert(renamed, known.clone());
+            }
+            renumbered.insert(id, renamed);
             nodes.push(node);
         }
         Model {
             root: renumbered.get(&root).copied().unwrap_or(root),
             nodes,
             materials: self.materials.clone(),
+            facets,
         }
     }
 
@@ -143,6 +159,7 @@ impl ModelBuilder {
         Model {
             nodes: self.nodes,
             materials: self.materials,
+            facets: self.facets,
             root,
         }
     }
@@ -159,6 +176,11 @@ impl Model {
     #[must_use]
     pub fn node(&self, id: NodeId) -> &Node {
         &self.nodes[id.0 as usize]
+    }
+
+    /// The mesh that bounds a node, if one was given.
+    pub(crate) fn facets(&self, id: NodeId) -> Option<&Facets> {
+        self.facets.get(&id).map(Arc::as_ref)
     }
 
     /// All nodes, children before parents.

@@ -1,6 +1,6 @@
 //! What the subdivision works on: interned primitives, one formula, a domain.
 
-use crate::{Aabb, Domain, Formula, Polynomial, PrimitiveId};
+use crate::{Aabb, Domain, Formula, KnownBoundary, Polynomial, PrimitiveId};
 
 /// A polynomial half-space boundary shared by all literals that mean the same surface.
 #[derive(Clone, PartialEq, Debug)]
@@ -64,4 +64,6 @@ pub struct Solid {
     pub nearly_equal: Vec<NearlyEqual>,
     /// Primitives with few digits left.
     pub imprecise: Vec<Imprecise>,
+    /// The boundary, where the whole solid is one polyhedron that was given by its faces.
+    pub known_boundary: Option<KnownBoundary>,
 }

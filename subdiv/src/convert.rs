@@ -4,7 +4,7 @@ use crate::balance::close;
 use crate::blossom::RootCoefficients;
 use crate::certify::DegreeTable;
 use crate::error::Error;
-use crate::fragments::Fragments;
+use crate::fragments::{Fragments, Triangle, VertexKind};
 use crate::harvest::{Cut, extract, gather};
 use crate::hessian::Hessian;
 use crate::lattice::MAX_LEVEL;
@@ -15,7 +15,7 @@ use crate::settings::{Observer, Report, Rule, Settings};
 use crate::specks::Doubtful;
 use crate::topology::kindred::{Kin, families};
 use crate::walk::{Sector, Visitor, Walker};
-use csg::Solid;
+use csg::{KnownBoundary, Solid};
 use rustc_hash::FxHashSet;
 use std::sync::Arc;
 use std::time::Instant;
@@ -47,6 +47,11 @@ pub fn convert(
     observer: &dyn Observer,
 ) -> Result<Outcome, Error> {
     let plan = Plan::new(solid, settings)?;
+    if let Some(known) = &solid.known_boundary
+        && plan.is_adaptive()
+    {
+        return Ok(known_outcome(known, settings));
+    }
     let threads = settings.threads.unwrap_or(0);
     let pool = rayon::ThreadPoolBuilder::new()
         .num_threads(threads)
@@ -60,6 +65,33 @@ pub fn convert(
             .join()
             .unwrap_or_else(|panic| std::panic::resume_unwind(panic))
     })
+}
+
+/// A boundary that was given needs no subdivision: nothing is nearer to what was meant.
+fn known_outcome(known: &KnownBoundary, settings: &Settings) -> Outcome {
+    let triangles = known.facets.iter().map(|facet| Triangle {
+        vertices: facet.vertices,
+        primitive: facet.primitive,
+        sense: facet.sense,
+        material: facet.material,
+    });
+    let fragments = Fragments {
+        kinds: vec![VertexKind::Interior; known.positions.len()],
+        positions: known.positions.clone(),
+        triangles: triangles.collect(),
+    };
+    let farthest = fragments.positions.iter();
+    let farthest = farthest.fold(0.0_f64, |far, p| far.max(p.abs().max_element()));
+    // A placement takes each coordinate four products and three sums.
+    let rounding = 8.0 * f64::EPSILON * farthest;
+    let topology = matches!(settings.rule, Rule::Topology { .. });
+    let report = Report {
+        largest_deviation: Some(rounding),
+        proved_topology: topology.then_some(true),
+        volume_interval: (!topology).then(|| fragments.volume_interval(rounding)),
+        ..Report::default()
+    };
+    Outcome { fragments, report }
 }
 
 /// A run with everything resolved.

@@ -42,3 +42,24 @@ pub struct Fragments {
     /// The boundary, in traversal order (the same for any number of threads).
     pub triangles: Vec<Triangle>,
 }
+
+impl Fragments {
+    /// Bounds on the volume of a solid whose boundary is these triangles, each corner of which may
+    /// be displaced by `rounding`, in model units.
+    pub(crate) fn volume_interval(&self, rounding: f64) -> [f64; 2] {
+        let at = |v: u32| self.positions.get(v as usize).copied().unwrap_or_default();
+        let apex = self.positions.first().copied().unwrap_or_default();
+        let (mut volume, mut error) = (0.0, 0.0);
+        for triangle in &self.triangles {
+            let [a, b, c] = triangle.vertices.map(|v| at(v) - apex);
+            let doubled_area = (b - a).cross(c - a).length();
+            let sextuple = a.dot(b.cross(c));
+            volume += sextuple;
+            // A displaced corner sweeps a third of the area for each unit; products of three
+            // differences round by some ulps, and so does the sum.
+            let size = a.length() * b.length() * c.length();
+            error += 3.0 * rounding * doubled_area + f64::EPSILON * (16.0 * size + volume.abs());
+        }
+        [(volume - error) / 6.0, (volume + error) / 6.0]
+    }
+}

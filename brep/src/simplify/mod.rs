@@ -1,7 +1,10 @@
-//! Optional clean-up that changes neither topology nor shape.
+//! Clean-up of what rounding leaves. [`remove_degenerate`] changes neither topology nor shape.
 
 mod collapse;
 mod flip;
+mod knots;
+
+pub use knots::contract_knots;
 
 use crate::topology::{Brep, VertexView};
 use crate::validate::{Defects, Valid};
@@ -27,6 +30,17 @@ pub struct Simplified {
     pub remaining_facets: usize,
 }
 
+/// The length up to which edges have none.
+fn shortest(brep: &Brep) -> f64 {
+    let [low, high] = brep
+        .vertices()
+        .map(VertexView::position)
+        .fold([DVec3::INFINITY, DVec3::NEG_INFINITY], |[low, high], p| {
+            [low.min(p), high.max(p)]
+        });
+    NO_LENGTH * (high - low).max_element().max(0.0)
+}
+
 /// Removes edges without length and facets of area zero wherever topology allows.
 ///
 /// An edge of up to 2⁻³³ of the mesh's size has no length; areas are zero exactly or not at all.
@@ -36,13 +50,7 @@ pub struct Simplified {
 /// # Errors
 /// Never for meshes within the guarantees; the result is validated again all the same.
 pub fn remove_degenerate(brep: Valid<Brep>) -> Result<(Valid<Brep>, Simplified), Defects> {
-    let [low, high] = brep
-        .vertices()
-        .map(VertexView::position)
-        .fold([DVec3::INFINITY, DVec3::NEG_INFINITY], |[low, high], p| {
-            [low.min(p), high.max(p)]
-        });
-    let reach = NO_LENGTH * (high - low).max_element().max(0.0);
+    let reach = shortest(&brep);
     remove(brep, reach, 0.0)
 }
 

@@ -1,5 +1,6 @@
 //! Triangles that pass through each other.
 
+use crate::topology::{Brep, VertexView};
 use glam::DVec3;
 use robust::{Coord3D, orient3d};
 use std::ops::Range;
@@ -27,6 +28,30 @@ pub(super) fn crossings(positions: &[DVec3], triangles: &[[u32; 3]]) -> Vec<[usi
     });
     found.sort_unstable();
     found
+}
+
+/// Whether triangles of a boundary pass through each other: an edge of one goes through the inside
+/// of another, and both of its ends are farther than `depth` from that one's plane. Touching is no
+/// crossing. Cost as of a sort, usually.
+pub fn passes_through_itself(brep: &Brep, depth: f64) -> bool {
+    let numbers = brep.number_vertices();
+    let number = |vertex: VertexView<'_>| numbers.get(vertex.key()).copied().unwrap_or(u32::MAX);
+    let positions: Vec<DVec3> = brep.vertices().map(VertexView::position).collect();
+    let triangles: Vec<[u32; 3]> = brep.facets().map(|f| f.vertices().map(number)).collect();
+    let place = |v: u32| positions[v as usize];
+    crossings(&positions, &triangles).iter().any(|pair| {
+        let [one, other] = pair.map(|at| triangles[at]);
+        [(one, other), (other, one)].iter().any(|&(edges, facet)| {
+            let [a, b, c] = facet.map(place);
+            let normal = (b - a).cross(c - a).normalize_or_zero();
+            (0..3).any(|k| {
+                let ends = [edges[k], edges[(k + 1) % 3]];
+                !ends.iter().any(|v| facet.contains(v))
+                    && passes(ends.map(place), [a, b, c])
+                    && ends.iter().all(|&v| normal.dot(place(v) - a).abs() > depth)
+            })
+        })
+    })
 }
 
 /// The plane of a triangle, to tell quickly what is on one side of it.

@@ -32,6 +32,7 @@ fn solid(polynomials: Vec<Polynomial>, nodes: Vec<FormulaNode>) -> Solid {
         clipped: false,
         nearly_equal: vec![],
         imprecise: vec![],
+        known_boundary: None,
     }
 }
 

@@ -150,7 +150,7 @@ impl Evaluator<'_, '_> {
     pub(super) fn approximate(&mut self, frame: &Frame, what: &str, error: f64) {
         let name = frame.name.of(self.text);
         self.complaints.warn_once(
-            &format!("approximate {name}"),
+            &format!("approximate {name} {what}"),
             frame.name,
             format!(
                 "`{name}` has no closed form here; it is taken as a {what} within {error:.2e} of it"
@@ -181,13 +181,8 @@ impl Evaluator<'_, '_> {
 
     /// A polyhedron from polygons that close, counter-clockwise from outside.
     pub(super) fn closed_polyhedron(&mut self, polygons: Vec<Vec<glam::DVec3>>) -> Option<NodeId> {
-        let parts = polyhedron::dented(polygons).ok()?;
-        Some(self.formula(parts))
-    }
-
-    /// The nodes of a formula.
-    pub(super) fn formula(&mut self, parts: Vec<Part>) -> NodeId {
-        formula(parts, &mut self.builder)
+        let polyhedron = polyhedron::dented(polygons).ok()?;
+        Some(polyhedron.add_to(&mut self.builder))
     }
 
     /// The union, without a node of its own if there is only one.

@@ -244,7 +244,9 @@ impl Evaluator<'_, '_> {
                 }
                 Step::Done(match volume {
                     Volume::Shape(shape) => Operand::Solid(self.builder.add(Node::Shape(shape))),
-                    Volume::Formula(parts) => Operand::Solid(self.formula(parts)),
+                    Volume::Polyhedron(polyhedron) => {
+                        Operand::Solid(polyhedron.add_to(&mut self.builder))
+                    }
                     Volume::Nothing => Operand::Nothing,
                     Volume::Everything => {
                         let nothing = self.builder.add(Node::Union(Vec::new()));

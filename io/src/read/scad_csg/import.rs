@@ -44,7 +44,8 @@ pub(super) fn content(
     complaints: &mut Complaints<'_>,
 ) -> Result<Vec<u8>, Reported> {
     files.read(path).map_err(|refusal| {
-        let message = format!("cannot read \"{path}\": {}", refusal.message);
+        let shown = path.replace(char::is_control, "\u{fffd}");
+        let message = format!("cannot read \"{shown}\": {}", refusal.message);
         // Once for all files that are refused alike.
         complaints.error_once(
             &refusal.message,

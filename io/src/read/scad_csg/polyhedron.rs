@@ -2,13 +2,15 @@
 //! formula of them.
 
 mod faces;
+mod given;
 mod partition;
 
 use super::arguments::Arguments;
+use super::combine;
 use super::complaints::{Complaints, Reported};
 use super::shapes::{Volume, finish};
 use super::token::Span;
-use csg::{Error, Shape};
+use csg::{Error, Facets, ModelBuilder, NodeId, Shape};
 use faces::Faces;
 pub(super) use faces::Unsound;
 use glam::DVec3;
@@ -116,7 +118,7 @@ pub(super) fn of_polygons(
         return Err(too_large(polygons.len(), at, complaints));
     }
     match dented(polygons) {
-        Ok(parts) => Ok(Volume::Formula(parts)),
+        Ok(polyhedron) => Ok(Volume::Polyhedron(polyhedron)),
         Err(Fault::Numbers(error)) => Err(complaints.error(at, error.to_string(), None)),
         Err(Fault::Unsound(why)) => Err(refuse(&why, at, complaints)),
     }
@@ -148,12 +150,31 @@ impl From<Error> for Fault {
     }
 }
 
-/// The formula of a polyhedron that is not convex.
-pub(super) fn dented(polygons: Vec<Vec<DVec3>>) -> Result<Vec<Part>, Fault> {
+/// A polyhedron as a formula and, where its faces do not pass through each other, their mesh.
+pub(super) struct Polyhedron {
+    parts: Vec<Part>,
+    facets: Option<Facets>,
+}
+
+impl Polyhedron {
+    /// The node that it becomes.
+    pub(super) fn add_to(self, builder: &mut ModelBuilder) -> NodeId {
+        let node = combine::formula(self.parts, builder);
+        if let Some(facets) = self.facets {
+            builder.bound(node, facets);
+        }
+        node
+    }
+}
+
+/// The formula of a polyhedron that need not be convex.
+pub(super) fn dented(polygons: Vec<Vec<DVec3>>) -> Result<Polyhedron, Fault> {
     let mut faces = Faces::new(polygons)?;
+    let facets = given::facets(&faces);
     let margin = DVec3::splat(MARGIN * faces.size);
     let around = [faces.min - margin, faces.max + margin];
-    within(&mut faces, around)
+    let parts = within(&mut faces, around)?;
+    Ok(Polyhedron { parts, facets })
 }
 
 /// The formula of walls that separate inside from outside between two heights, the lowest and

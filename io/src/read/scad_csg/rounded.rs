@@ -2,7 +2,6 @@
 //! rounded edges, and what turns about an axis.
 
 use super::ball_hull::{self, Ball, MAX_BALLS};
-use super::combine;
 use super::figure::{self, Extrusion, Figures, Refusal};
 use super::point_hull;
 use super::polyhedron::dented;
@@ -16,7 +15,7 @@ const SAME: f64 = 1e-6;
 const ROUNDING: f64 = 1e-12;
 
 /// Hulls with more triangles are written as formulas in which few planes matter in each place.
-const MANY_FACES: usize = 600;
+const MANY_FACES: usize = 100;
 
 /// A solid, if it has volume.
 pub(super) type Made = Result<Option<NodeId>, Error>;
@@ -32,8 +31,8 @@ pub(super) fn polyhedron(points: &[DVec3], near: f64, builder: &mut ModelBuilder
     if faces.len() > MANY_FACES {
         let at = |v: &usize| vertices.get(*v).copied().unwrap_or_default();
         let polygons = faces.iter().map(|f| f.iter().map(at).collect()).collect();
-        if let Ok(parts) = dented(polygons) {
-            return Ok(Some(combine::formula(parts, builder)));
+        if let Ok(polyhedron) = dented(polygons) {
+            return Ok(Some(polyhedron.add_to(builder)));
         }
     }
     let shape = Shape::convex_hull(&vertices, &faces)?;

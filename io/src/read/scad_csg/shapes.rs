@@ -14,8 +14,8 @@ use std::f64::consts::PI;
 pub(super) enum Volume {
     /// A shape.
     Shape(Shape),
-    /// A formula of shapes.
-    Formula(Vec<polyhedron::Part>),
+    /// A polyhedron that need not be convex.
+    Polyhedron(polyhedron::Polyhedron),
     /// No point at all; a warning was given.
     Nothing,
     /// All of space; a warning was given.
@@ -82,7 +82,7 @@ impl<'f> ShapeReader<'f> {
             clippy::cast_sign_loss,
             reason = "positive and at most a u32"
         )]
-        Some((fragments.ceil() as u32).max(3))
+        Some((fragments.floor() as u32).max(3))
     }
 
     fn sphere(&self, arguments: &Arguments<'_>, complaints: &mut Complaints<'_>) -> Outcome {
@@ -329,7 +329,7 @@ pub(super) fn finish(
     if size > MAX_SIZE {
         return Err(complaints.error(
             at,
-            format!("{size} is too large a size to compute with"),
+            format!("{size:e} is too large a size to compute with"),
             format!("scale the model; sizes up to {MAX_SIZE} are possible"),
         ));
     }

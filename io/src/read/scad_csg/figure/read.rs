@@ -81,7 +81,7 @@ fn check_size(
     }
     Err(complaints.error(
         arguments.name,
-        format!("{size} is too large a size to compute with"),
+        format!("{size:e} is too large a size to compute with"),
         format!("scale the model; sizes up to {MAX_SIZE} are possible"),
     ))
 }

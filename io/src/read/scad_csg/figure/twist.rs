@@ -1,5 +1,6 @@
 //! `linear_extrude` with a twist, in layers as OpenSCAD makes them: between two turned sections
-//! each edge becomes two triangles, split along the diagonal that makes the layer convex there.
+//! each edge becomes two triangles, split along the shorter diagonal or, of equal ones, the one that
+//! makes the layer convex there.
 
 use super::super::{combine, polyhedron};
 use super::loops::Loops;
@@ -7,6 +8,9 @@ use super::read::Twist;
 use super::{doubled_area, solid::Refusal};
 use csg::{ModelBuilder, Node, NodeId};
 use glam::{DMat2, DVec2, DVec3};
+
+/// Relative difference of squared lengths that are equal but for rounding.
+const SAME: f64 = 1e-9;
 
 /// The union of the layers.
 pub(super) fn layers(
@@ -31,7 +35,14 @@ pub(super) fn layers(
             let is_hole = doubled_area(one) < 0.0;
             for (&p, &q) in one.iter().zip(one.iter().cycle().skip(1)) {
                 let (a, b, c, d) = (below(p), below(q), above(q), above(p));
-                if (twist.degrees > 0.0) == is_hole {
+                let (ac, bd) = (a.distance_squared(c), b.distance_squared(d));
+                let are_equal = (ac - bd).abs() <= SAME * (ac + bd);
+                let along_bd = if are_equal {
+                    (twist.degrees > 0.0) == is_hole
+                } else {
+                    bd < ac
+                };
+                if along_bd {
                     triangles.extend([[a, b, d], [d, b, c]]);
                 } else {
                     triangles.extend([[a, b, c], [a, c, d]]);

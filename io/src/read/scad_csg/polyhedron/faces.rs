@@ -8,11 +8,15 @@ use std::collections::BTreeMap;
 /// OpenSCAD writes coordinates with six digits.
 const FLATNESS: f64 = 2e-6;
 
-/// The same for planes that are equal but for rounding.
+/// Heights of triangles without a plane of their own, in distances within which faces are flat.
+const NEEDLE: f64 = 1e-6;
+
+/// [`FLATNESS`] for planes that are equal but for rounding.
 const SAME: f64 = 1e-12;
 
-/// Cosine of the largest angle between the normals of faces that are taken for coplanar.
-const PARALLEL: f64 = 0.999_999;
+/// Cosine of the largest angle, 10⁻⁴, between the normals of faces that are taken for coplanar.
+/// Planes through a vertex that meet at larger ones meet within 10⁻⁸ of it, in spite of rounding.
+const PARALLEL: f64 = 1.0 - 5e-9;
 
 /// Why faces are not those of a polyhedron.
 #[derive(Clone, PartialEq, Debug)]
@@ -54,6 +58,8 @@ struct Candidate {
 #[derive(Debug)]
 pub(super) struct Faces {
     pub(super) triangles: Vec<Triangle>,
+    /// Triangles without area, which have no plane of their own.
+    pub(super) needles: Vec<[DVec3; 3]>,
     pub(super) planes: Vec<Plane>,
     /// Size of the polyhedron.
     pub(super) size: f64,
@@ -96,11 +102,13 @@ impl Faces {
             let (a, b) = (vector_area(a), vector_area(b));
             b.length_squared().total_cmp(&a.length_squared())
         });
-        let mut pieces = Vec::new();
+        let (mut pieces, mut needles) = (Vec::new(), Vec::new());
         for polygon in polygons {
-            cut(&polygon, FLATNESS * size, &mut pieces)?;
+            cut(&polygon, FLATNESS * size, &mut pieces, &mut needles)?;
         }
-        Ok(Self::of_pieces(&pieces, [min, max]))
+        let mut faces = Self::of_pieces(&pieces, [min, max]);
+        faces.needles = needles;
+        Ok(faces)
     }
 
     /// Takes triangles, counter-clockwise from outside, that need not close.
@@ -122,6 +130,7 @@ impl Faces {
         let size = min.distance(max);
         let mut faces = Self {
             triangles: Vec::with_capacity(pieces.len()),
+            needles: Vec::new(),
             planes: Vec::new(),
             size,
             slack: 0.0,
@@ -217,28 +226,46 @@ impl Plane {
 
 /// Cuts a face into triangles with its plane or, where it is not plane, their own: OpenSCAD, too,
 /// splits such faces, along whichever diagonals.
-fn cut(polygon: &[DVec3], flat: f64, pieces: &mut Vec<Candidate>) -> Result<(), Unsound> {
+fn cut(
+    polygon: &[DVec3],
+    flat: f64,
+    pieces: &mut Vec<Candidate>,
+    needles: &mut Vec<[DVec3; 3]>,
+) -> Result<(), Unsound> {
     let Some(normal) = vector_area(polygon).try_normalize() else {
+        if let Some((&first, rest)) = polygon.split_first() {
+            let fan = rest.array_windows().map(|&[a, b]| [first, a, b]);
+            needles.extend(fan);
+        }
         return Ok(());
     };
     let offset = normal.dot(polygon.iter().sum::<DVec3>() / polygon.len() as f64);
     let own = Plane { normal, offset };
     let mut away = polygon.iter().map(|p| normal.dot(*p) - offset);
-    let is_flat = away.all(|d| d.abs() <= flat);
+    let is_flat = polygon.len() > 3 && away.all(|d| d.abs() <= flat);
     let triangles = triangulate(polygon, normal).ok_or(Unsound::Crossing)?;
-    pieces.extend(triangles.into_iter().filter_map(|corners| {
+    for corners in triangles {
         let plane = if is_flat {
             Some(own)
         } else {
-            plane_of(&corners)
+            plane_of(&corners).filter(|_| !is_needle(&corners, NEEDLE * flat))
         };
-        plane.map(|plane| Candidate { corners, plane })
-    }));
+        match plane {
+            Some(plane) => pieces.push(Candidate { corners, plane }),
+            None => needles.push(corners),
+        }
+    }
     Ok(())
 }
 
+/// Whether a triangle is no higher than a length, so that rounding makes its plane.
+fn is_needle(&[a, b, c]: &[DVec3; 3], height: f64) -> bool {
+    let longest = a.distance(b).max(b.distance(c)).max(c.distance(a));
+    (b - a).cross(c - a).length() <= height * longest
+}
+
 /// The edges of a triangle, whichever way.
-fn edges(&[a, b, c]: &[DVec3; 3]) -> [[[u64; 3]; 2]; 3] {
+pub(super) fn edges(&[a, b, c]: &[DVec3; 3]) -> [[[u64; 3]; 2]; 3] {
     [[a, b], [b, c], [c, a]].map(|ends| {
         let mut keys = ends.map(|p| p.to_array().map(f64::to_bits));
         keys.sort_unstable();
@@ -315,6 +342,14 @@ fn triangulate(polygon: &[DVec3], normal: DVec3) -> Option<Vec<[DVec3; 3]>> {
     let outline: Vec<DVec2> = left.iter().map(|l| l.0).collect();
     let mut triangles = Vec::with_capacity(left.len());
     let mut covered = 0.0;
+    // OpenSCAD splits quadrilaterals along the shorter diagonal, which matters where they are not
+    // plane.
+    if let [a, b, c, d] = *polygon
+        && a.distance_squared(c) < b.distance_squared(d)
+    {
+        // Then the first ear is at b.
+        left.rotate_left(1);
+    }
     while left.len() > 3 {
         let n = left.len();
         let at = |i: usize| left.get(i % n).copied().unwrap_or_default();

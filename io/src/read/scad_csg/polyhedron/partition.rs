@@ -31,6 +31,9 @@ pub(super) enum Piece {
 /// Pieces of faces that a partition may make of each face.
 const MOST_PIECES: usize = 200;
 
+/// Pieces that are allowed in any case: about two seconds and 200 MB.
+const ALWAYS: usize = 20_000_000;
+
 /// Planes that are tried for each cell.
 const CANDIDATES: usize = 12;
 
@@ -38,8 +41,14 @@ const CANDIDATES: usize = 12;
 const CROWD: usize = 16;
 
 /// Distance from a plane within which points count as lying in it, in sizes of the polyhedron,
-/// besides how far corners are from the planes of their own faces.
-const NEAR: f64 = 1e-10;
+/// besides how far corners are from the planes of their own faces: what rounding makes of corners of
+/// pieces, and room. What is dropped for lying in a plane leaves a notch this deep, and longer where
+/// planes are almost parallel. It has to be the same for all planes: pieces reach this far beyond
+/// those that cut them.
+const NEAR: f64 = 2e-13;
+
+/// Distance from faces at which the formula is probed, in sizes of the polyhedron.
+const PROBE: f64 = 2e-9;
 
 fn near(faces: &Faces) -> f64 {
     NEAR * faces.size + 2.0 * faces.slack
@@ -54,7 +63,7 @@ pub(super) fn formula(faces: &mut Faces) -> Result<Vec<Piece>, Unsound> {
         Part(Piece),
     }
     let near = near(faces);
-    let mut left = (faces.triangles.len() + 50) * MOST_PIECES;
+    let mut left = (faces.triangles.len() * MOST_PIECES).max(ALWAYS);
     let mut pieces = Vec::new();
     let mut tasks = vec![Task::Cell(faces.triangles.clone())];
     while let Some(task) = tasks.pop() {
@@ -296,7 +305,7 @@ fn contains(pieces: &[Piece], ends: &[usize], planes: &[Plane], point: DVec3) ->
 /// Whether the formula is false just before each face and true just behind, which it is not
 /// when faces cross.
 pub(super) fn is_bounded_by(pieces: &[Piece], faces: &Faces) -> bool {
-    let height = 20.0 * near(faces);
+    let height = PROBE * faces.size + 40.0 * faces.slack;
     let ends = ends(pieces);
     let mut seen = faces.triangles.iter().filter(|t| {
         let [a, b, c] = t.corners;

@@ -263,7 +263,7 @@ fn matrices_and_sizes_out_of_range_are_refused() {
         "t.csg:1:12: the last row of a matrix must be [0, 0, 0, 1], found [0, 0, 0.5, 1] \
          (projective maps have no place in an OpenSCAD model)"
     );
-    assert!(only_error("sphere(r = 1e90);").contains("too large a size"));
+    assert!(only_error("sphere(r = 1e90);").contains("1e90 is too large a size"));
     assert!(only_error("multmatrix([[1,0],[0,1]]) { cube(1); }").contains("a list of 4 rows"));
 }
 
