@@ -15,7 +15,7 @@ const SAME: f64 = 1e-6;
 const ROUNDING: f64 = 1e-12;
 
 /// Hulls with more triangles are written as formulas in which few planes matter in each place.
-const MANY_FACES: usize = 100;
+const MANY_FACES: usize = 600;
 
 /// A solid, if it has volume.
 pub(super) type Made = Result<Option<NodeId>, Error>;

@@ -8,11 +8,11 @@ use super::rounded::{Axis, Made, as_prism, polyhedron, round_hull};
 use csg::NodeId;
 use glam::{DVec2, DVec3};
 
-/// Points of an approximated hull from which on it is made coarser.
-const MANY_POINTS: usize = 20_000;
-
 /// Points of one body from which on those inside its hull are left out first.
 const SEVERAL_POINTS: usize = 500;
+
+/// How much coarser than alone small bodies are sampled, at most.
+const COARSEST: f64 = 8.0;
 
 /// How fine bodies are sampled: within 10⁻³ of their sizes. Twice half as much again is lost to points
 /// that are left out, so the hull is within 2·10⁻³.
@@ -117,26 +117,35 @@ impl Evaluator<'_, '_> {
 
     /// The hull of points on the bodies.
     fn sampled_hull(&mut self, frame: &Frame, bodies: &[Body]) -> Operand {
+        let mut samples = Vec::with_capacity(bodies.len());
+        for body in bodies {
+            let Some(sample) = body.points(&mut self.builder, COARSEST * FINE) else {
+                return self.not_closed(frame);
+            };
+            samples.push(sample);
+        }
+        let all: Vec<DVec3> = samples.iter().flat_map(|s| &s.0).copied().collect();
+        let size = point_hull::span(&all);
         let (mut points, mut error) = (Vec::new(), 0.0_f64);
-        for coarseness in [FINE, 8.0 * FINE] {
-            points.clear();
-            error = 0.0;
-            for body in bodies {
-                let Some((some, off)) = body.points(&mut self.builder, coarseness) else {
+        for (body, mut sample) in bodies.iter().zip(samples) {
+            // Small bodies need fewer points for their size: between as many as make them as
+            // good as they would be alone, and as the whole.
+            let coarser = (size / point_hull::span(&sample.0)).sqrt();
+            if coarser < COARSEST {
+                let Some(finer) = body.points(&mut self.builder, coarser * FINE) else {
                     return self.not_closed(frame);
                 };
-                let mut hull = None;
-                if some.len() > SEVERAL_POINTS {
-                    hull = point_hull::triangles(&some, 0.5 * off);
-                }
-                match &mut hull {
-                    Some(faces) => points.extend(point_hull::used(&some, faces)),
-                    None => points.extend(some),
-                }
-                error = error.max(off);
+                sample = finer;
             }
-            if points.len() <= MANY_POINTS {
-                break;
+            let (some, off) = sample;
+            error = error.max(off);
+            let mut hull = None;
+            if some.len() > SEVERAL_POINTS {
+                hull = point_hull::triangles(&some, 0.5 * off);
+            }
+            match &mut hull {
+                Some(faces) => points.extend(point_hull::used(&some, faces)),
+                None => points.extend(some),
             }
         }
         if error > 0.0 {

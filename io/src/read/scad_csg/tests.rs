@@ -9,6 +9,7 @@ mod files;
 mod messages;
 mod random;
 mod semantics;
+mod table;
 
 fn try_read(text: &str) -> Result<Reading, Diagnostics> {
     read(text, "t.csg", &ReadOptions::default())

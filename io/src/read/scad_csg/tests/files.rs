@@ -17,7 +17,10 @@ impl Files for Memory {
     }
 }
 
-fn read(text: &str, files: Vec<(&'static str, Vec<u8>)>) -> Result<Reading, Diagnostics> {
+pub(super) fn read(
+    text: &str,
+    files: Vec<(&'static str, Vec<u8>)>,
+) -> Result<Reading, Diagnostics> {
     scad_csg::read_with(text, "t.csg", &ReadOptions::default(), &Memory(files))
 }
 
@@ -34,7 +37,7 @@ fn told(result: Result<Reading, Diagnostics>) -> String {
     lines(result.expect_err("unreadable").as_slice()).join("\n")
 }
 
-const TETRAHEDRON: &str = "OFF # a corner of the unit cube\n4 4 6\n0 0 0\n1 0 0\n\n0 1 0\n0 0 1\n\
+pub(super) const TETRAHEDRON: &str = "OFF # a corner of the unit cube\n4 4 6\n0 0 0\n1 0 0\n\n0 1 0\n0 0 1\n\
                            3 0 2 1 255 0 0\n3 0 1 3\n3 0 3 2\n3 1 2 3\n";
 
 const OBJ: &str = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n";
