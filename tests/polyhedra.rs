@@ -52,7 +52,7 @@ impl Mesh {
 
     /// OpenSCAD's faces turn the other way.
     fn source(&self) -> String {
-        let points: Vec<[f64; 3]> = self.points.iter().map(|p| p.to_array()).collect();
+        let points: Vec<[f64; 3]> = self.points.iter().map(DVec3::to_array).collect();
         let faces: Vec<[usize; 3]> = self.faces.iter().map(|&[a, b, c]| [a, c, b]).collect();
         format!("polyhedron(points = {points:?}, faces = {faces:?}, convexity = 1);")
     }
@@ -294,8 +294,9 @@ fn an_imported_mesh_is_itself() {
 #[test]
 fn bumpy_meshes_keep_their_topology_beside_others() {
     let n = triangles();
-    let sides = (n as f64 / 4.0).sqrt() as usize;
+    let sides = (n / 4).isqrt();
     keeps_its_topology(&torus(2 * sides, sides));
     keeps_its_topology(&ball(2 * sides, sides, |at| 10.0 + noise(at)));
-    keeps_its_topology(&plate((n as f64 / 120.0).sqrt().ceil() as i64));
+    let squares = i64::try_from((n / 100).isqrt()).unwrap();
+    keeps_its_topology(&plate(squares.max(2)));
 }

@@ -231,9 +231,9 @@ fn used_only(mut nodes: Vec<FormulaNode>, others: &[PrimitiveId], interned: &mut
     };
     let nearly_equal = interned.nearly_equal.iter().filter_map(pair).collect();
     Used {
-        nearly_equal,
         nodes,
         primitives,
+        nearly_equal,
         renamed,
     }
 }
