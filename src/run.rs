@@ -336,7 +336,7 @@ pub(crate) fn check_targets(input: &Input, targets: &[&Target]) -> Result<(), Fa
 }
 
 /// A missing folder is better told before the work than after it.
-fn check_folder(target: &Target) -> Result<(), Failure> {
+pub(crate) fn check_folder(target: &Target) -> Result<(), Failure> {
     let Target::File(path) = target else {
         return Ok(());
     };

@@ -3,6 +3,7 @@
 mod compare;
 pub(crate) mod csg2cspg;
 mod half_spaces;
+mod implicit;
 pub(crate) mod pipe;
 mod propsimpl;
 mod sector_solid;
@@ -22,6 +23,8 @@ pub(crate) enum ThesisCommand {
     Compare(compare::CompareArgs),
     /// Turn a .CSG solid into half-spaces in Bézier form, .cspg (A.2)
     Csg2cspg(csg2cspg::Csg2CspgArgs),
+    /// Approximate a solid bounded by functions that are no polynomials, .apl (6.3.5)
+    Implicit(implicit::ImplicitArgs),
     /// Subdivide a .cspg solid into a linear approximation, .apl, or a tree (A.3)
     Subsimpl(subsimpl::SubsimplArgs),
     /// Print the area or the volume of what subsimpl wrote (A.6)
@@ -37,6 +40,7 @@ pub(crate) fn run(command: ThesisCommand, talk: Talk) -> Result<(), Failure> {
     match command {
         ThesisCommand::Compare(args) => compare::run(args, talk),
         ThesisCommand::Csg2cspg(args) => csg2cspg::run(args, talk),
+        ThesisCommand::Implicit(args) => implicit::run(args, talk),
         ThesisCommand::Subsimpl(args) => subsimpl::run(&args, talk),
         ThesisCommand::Propsimpl(args) => propsimpl::run(&args, talk),
         ThesisCommand::Visual(args) => visual::run(args),

@@ -228,6 +228,58 @@ fn helps_name_the_options_of_the_thesis() {
     }
 }
 
+/// A torus by roots, a ball by powers of e, and a box whose one wall is a sine's: volumes by their
+/// formulas, of boundaries that close.
+#[test]
+fn functions_are_approximated_as_solids() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    let half = ["-B", "-3.141592653589793", "-1", "-1", "1", "1", "1"];
+    let cube = ["-B", "-1.5", "-1.5", "-1.5", "1.5", "1.5", "1.5"];
+    let cases: [(&[&str], &[&str], f64, f64); 4] = [
+        (
+            &["sqrt((sqrt(x^2+y^2)-1)^2+z^2) - 0.4"],
+            &cube,
+            2.0 * PI * PI * 0.16,
+            0.01,
+        ),
+        (
+            &["exp(x^2 + y^2 + z^2) - exp(1)"],
+            &cube,
+            4.0 / 3.0 * PI,
+            0.01,
+        ),
+        (&["sin(x)"], &half, 4.0 * PI, 1e-3),
+        // Two functions: a quarter of a ball, with the planes' walls.
+        (&["x^2+y^2+z^2 - 1", "x/2", "(-y)"], &cube, PI / 3.0, 0.01),
+    ];
+    for (functions, bounds, volume, relative) in cases {
+        let args = [&["thesis", "implicit"], functions, bounds, &["-N", "18"]].concat();
+        std::fs::write(folder.join("a.apl"), out(folder, &args, b"")).unwrap();
+        let report = out(folder, &["a.apl", "--report", "-"], b"");
+        let report: serde_json::Value = serde_json::from_slice(&report).unwrap();
+        let got = report["volume"].as_f64().unwrap();
+        assert!(
+            (got / volume - 1.0).abs() < relative,
+            "{functions:?}: {got} {volume}"
+        );
+        assert_eq!(report["counts"]["shells"], 1, "{functions:?}");
+    }
+    // Without the box's walls the plane is all there is.
+    let open = ["thesis", "implicit", "sin(x)", "-L", "-N", "12"];
+    let bytes = out(
+        folder,
+        &[&open[..], &["-B", "-1", "-1", "-1", "1", "1", "1"]].concat(),
+        b"",
+    );
+    let area = measure(&pipeline(folder, &bytes, &[&["propsimpl", "-A"]]), "area");
+    assert!(area >= 4.0, "{area}");
+    let refused = run(folder, &["thesis", "implicit", "x + tan(y)"], b"");
+    let said = String::from_utf8_lossy(&refused.stderr);
+    assert_eq!(refused.status.code(), Some(1), "{said}");
+    assert!(said.contains("column 5: unknown name `tan`"), "{said}");
+}
+
 /// The bytes of a linear approximation: a square across the y axis.
 fn square(material: i32, y: f64, half: f64) -> Vec<u8> {
     let corners = [[-half, -half], [half, -half], [half, half], [-half, half]];

@@ -10,10 +10,12 @@
 //! So `-x^2` is −(x²) and `x^2^3` is x⁸. Operators stand on an explicit stack: 100,000 parentheses
 //! cost no more stack than one. Degrees are checked before anything is multiplied out.
 
+mod function;
 mod terms;
 
 use crate::read::decimal::decimal;
 use csg::Axis;
+pub(crate) use function::parse_function;
 use std::ops::Range;
 pub(crate) use terms::Terms;
 use terms::{Limits, Refusal};

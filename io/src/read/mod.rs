@@ -19,6 +19,35 @@ pub mod scad_csg;
 pub use diagnostic::{Diagnostic, Diagnostics};
 pub use files::{FileRefusal, Files, NoFiles};
 
+/// Reads a function of x, y and z such as `sin(x)*cos(y) - exp(-z)`.
+///
+/// # Errors
+/// What is wrong, with its place in the text: column, cause, remedy.
+pub fn function(text: &str) -> Result<subdiv::functions::Expression, FunctionError> {
+    expression::parse_function(text).map_err(|wrong| FunctionError {
+        column: text
+            .get(..wrong.span.start)
+            .map_or(0, |before| before.chars().count())
+            + 1,
+        message: wrong.message,
+        remedy: wrong.remedy.map_or_else(String::new, |r| format!(" ({r})")),
+    })
+}
+
+/// A text that is no function.
+///
+/// Displays as `column 5: unknown name `tan` (known are …)`.
+#[derive(Clone, PartialEq, Eq, Debug, thiserror::Error)]
+#[error("column {column}: {message}{remedy}")]
+pub struct FunctionError {
+    /// Where, from 1.
+    pub column: usize,
+    /// What is wrong.
+    pub message: String,
+    /// What to do, in parentheses, or nothing.
+    pub remedy: String,
+}
+
 /// What a reader may decide.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub struct ReadOptions {

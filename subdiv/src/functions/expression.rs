@@ -51,6 +51,12 @@ impl Expression {
         })
     }
 
+    /// How many operations it takes, numbers and variables included.
+    #[must_use]
+    pub fn operation_count(&self) -> usize {
+        self.operations.len()
+    }
+
     fn then(mut self, operation: Operation) -> Self {
         self.operations.push(operation);
         self
