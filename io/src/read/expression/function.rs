@@ -201,6 +201,10 @@ fn apply(
                 "write sqrt(x), or exp(x)",
             ));
         }
+        #[expect(
+            clippy::cast_possible_truncation,
+            reason = "whole and at most 64, as was just checked"
+        )]
         let exponent = exponent as i32;
         return Ok(Operand {
             function: power(&left.function, exponent),
