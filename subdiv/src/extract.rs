@@ -57,20 +57,7 @@ impl Extractor {
         frame: &Frame,
         mesh: &mut MeshBuilder,
     ) -> Result<usize, LeafError> {
-        let value = |p: PrimitiveId| {
-            let found = frame.active.binary_search_by_key(&p.0, |a| a.primitive);
-            let Ok(at) = found else {
-                return Ternary::Unknown;
-            };
-            let signs = frame.values_of(&frame.active[at]).map(vertex_sign);
-            if signs != [signs[0]; 4] {
-                Ternary::Unknown
-            } else if signs[0] == Sign::Negative {
-                Ternary::In
-            } else {
-                Ternary::Out
-            }
-        };
+        let value = |p: PrimitiveId| frame.side(p.0);
         let mut pruned = std::mem::take(&mut self.pruned);
         pruned.clear();
         let result = localize(&frame.formula, value, &mut pruned, &mut self.scratch);

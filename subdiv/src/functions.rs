@@ -176,17 +176,7 @@ impl Descent<'_> {
             let scratch = &mut self.scratch;
             let value = |unit: DVec3| function.value(self.domain.from_unit(unit), scratch);
             frame.coefficients.extend(corners.map(value));
-            frame.active.push(Active {
-                primitive,
-                degree: 1,
-                offset,
-                rounding: 0.0,
-                root_rounding: 0.0,
-                model_error: 0.0,
-                largest: 0.0,
-                value: Ternary::Unknown,
-                clearance: 0.0,
-            });
+            frame.active.push(Active::unbounded(primitive, 1, offset));
         }
         let extracted = self
             .extractor

@@ -7,7 +7,6 @@ use crate::fragments::Fragments;
 use crate::lattice::Point;
 use crate::limits::Budget;
 use crate::mesh::{MeshBuilder, join};
-use crate::predicates::{Sign, vertex_sign};
 use crate::settings::{MAX_SPOTS, Observer, Report, Spot};
 use crate::simplex::Simplex;
 use crate::specks::{Doubtful, clear_specks};
@@ -193,29 +192,15 @@ impl Harvester<'_> {
 
     fn extract(&mut self, simplex: &Simplex, frame: &Frame) -> Result<(), LeafError> {
         // Primitives with one sign at all four vertices do not cross the leaf's affine picture.
-        let side = |primitive: u32| {
-            let found = frame.active.iter().find(|a| a.primitive == primitive);
-            let Some(active) = found else {
-                return Ternary::Unknown;
-            };
-            let signs = frame.values_of(active).map(vertex_sign);
-            if signs != [signs[0]; 4] {
-                Ternary::Unknown
-            } else if signs[0] == Sign::Negative {
-                Ternary::In
-            } else {
-                Ternary::Out
-            }
-        };
         let formula = if frame
             .active
             .iter()
-            .all(|a| side(a.primitive) == Ternary::Unknown)
+            .all(|a| frame.side(a.primitive) == Ternary::Unknown)
         {
             &frame.formula
         } else {
             self.pruned.clear();
-            let value = |p: PrimitiveId| side(p.0);
+            let value = |p: PrimitiveId| frame.side(p.0);
             let result = localize(&frame.formula, value, &mut self.pruned, self.scratch);
             if result != Ternary::Unknown {
                 return Ok(());

@@ -7,6 +7,7 @@ use crate::certify::{BarycentricGradients, barycentric_gradients};
 use crate::classify::{Criterion, classify};
 use crate::halving::halve;
 use crate::margin::Margin;
+use crate::predicates::{Sign, vertex_sign};
 use crate::rounding::of_halving;
 use crate::simplex::Simplex;
 use csg::{FormulaNode, LocalizeScratch, PrimitiveId, Solid, Ternary, localize};
@@ -37,6 +38,22 @@ pub(crate) struct Active {
 }
 
 impl Active {
+    /// A primitive of which nothing is bounded, since nothing is to be proved.
+    #[must_use]
+    pub(crate) fn unbounded(primitive: u32, degree: u32, offset: u32) -> Self {
+        Self {
+            primitive,
+            degree,
+            offset,
+            rounding: 0.0,
+            root_rounding: 0.0,
+            model_error: 0.0,
+            largest: 0.0,
+            value: Ternary::Unknown,
+            clearance: 0.0,
+        }
+    }
+
     /// Bound on the error of its coefficients against the user's model.
     #[must_use]
     pub(crate) fn error(&self) -> f64 {
@@ -64,6 +81,22 @@ impl Frame {
         self.active.clear();
         self.formula.clear();
         self.within.clear();
+    }
+
+    /// On which side of a primitive all four vertices are.
+    #[must_use]
+    pub(crate) fn side(&self, primitive: u32) -> Ternary {
+        let Some(active) = self.active.iter().find(|a| a.primitive == primitive) else {
+            return Ternary::Unknown;
+        };
+        let signs = self.values_of(active).map(vertex_sign);
+        if signs != [signs[0]; 4] {
+            Ternary::Unknown
+        } else if signs[0] == Sign::Negative {
+            Ternary::In
+        } else {
+            Ternary::Out
+        }
     }
 
     /// The formula that holds in the simplex, whatever is around it.

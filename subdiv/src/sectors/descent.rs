@@ -85,17 +85,10 @@ impl<'a> Descent<'a> {
         let mut frame = Frame::default();
         frame.formula.extend_from_slice(formula);
         for (at, (degree, coefficients)) in primitives.iter().enumerate() {
-            frame.active.push(Active {
-                primitive: at as u32,
-                degree: *degree as u32,
-                offset: frame.coefficients.len() as u32,
-                rounding: 0.0,
-                root_rounding: 0.0,
-                model_error: 0.0,
-                largest: 0.0,
-                value: Ternary::Unknown,
-                clearance: 0.0,
-            });
+            let offset = frame.coefficients.len() as u32;
+            frame
+                .active
+                .push(Active::unbounded(at as u32, *degree as u32, offset));
             frame.coefficients.extend_from_slice(coefficients);
         }
         drop_unused(&mut frame);
