@@ -123,6 +123,8 @@ const TURNED: &str = "multmatrix([[1,0,0,0],[0,0.62160996827066440,0.78332690962
 
 #[test]
 fn volumes_and_areas_are_those_of_the_formulas() {
+    let eccentricity = 3.0_f64.sqrt() / 2.0;
+    let spheroid = 2.0 * PI * (1.0 + 2.0 / eccentricity * eccentricity.asin());
     let cap = PI * 4.0 * (3.0 * 2.0 - 2.0) / 3.0;
     let models = [
         ("cube", "cube(size=[1,2,3]);".to_owned(), 6.0, 22.0, "plane 6"),
@@ -139,6 +141,13 @@ fn volumes_and_areas_are_those_of_the_formulas() {
             cap,
             PI * 12.0,
             "plane 1 sphere 1",
+        ),
+        (
+            "spheroid",
+            "multmatrix([[2,0,0,5],[0,1,0,0],[0,0,1,0],[0,0,0,1]]) sphere(r=1);".to_owned(),
+            PI * 8.0 / 3.0,
+            spheroid,
+            "bsplinesurface 1",
         ),
         (
             "cavity",
@@ -275,11 +284,31 @@ fn the_same_solid_gives_the_same_bytes_without_a_date() {
 }
 
 #[test]
-fn surfaces_without_a_true_form_are_named_and_written_as_facets() {
-    let source = "multmatrix([[2,0,0,0],[0,1,0,0],[0,0,1,0],[0,0,0,1]]) sphere(r=1);";
-    let files = reread(&[("ellipsoid".to_owned(), source.to_owned())], TOLERANCE);
+fn elliptic_cylinders_are_swept_ellipses() {
+    let source = "difference() { multmatrix([[2,0,0,1],[0,1,0,2],[0,0,1,0],[0,0,0,1]]) \
+                  cylinder(h=6, r=1); multmatrix([[1,0,0,0.5],[0,1,0,0],[0,0,1,0],[0,0,0,1]]) \
+                  cube(size=[3,4,3]); }";
+    let files = reread(&[("elliptic".to_owned(), source.to_owned())], TOLERANCE);
     let (written, file) = &files[0];
-    check("ellipsoid", written, file, TOLERANCE);
+    check("elliptic", written, file, TOLERANCE);
+    assert!(written.outcome.faceted.is_empty(), "{:?}", written.outcome);
+    // A segment of the unit circle from x = -1/4 on, stretched by 2, is missing from half of it.
+    let segment = PI / 2.0 + 0.25 * (1.0 - 0.0625_f64).sqrt() + 0.25_f64.asin();
+    let part = &file.solids[0];
+    assert!(near(part.volume, 12.0 * PI - 6.0 * segment), "{part:?}");
+    assert_eq!(part.surfaces["surfaceofextrusion"], 1);
+}
+
+#[test]
+fn surfaces_without_a_true_form_are_named_and_written_as_facets() {
+    let source =
+        "multmatrix([[2,0,0,0],[0,1,0,0],[0,0,1,0],[0,0,0,1]]) cylinder(h=1, r1=1, r2=0.5);";
+    let files = reread(
+        &[("elliptic_cone".to_owned(), source.to_owned())],
+        TOLERANCE,
+    );
+    let (written, file) = &files[0];
+    check("elliptic_cone", written, file, TOLERANCE);
     let outcome = &written.outcome;
     assert_eq!(outcome.faceted.len(), 1);
     assert!(

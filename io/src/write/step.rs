@@ -9,6 +9,7 @@
 mod describe;
 mod exact;
 mod faceted;
+mod quadric;
 mod seam;
 mod surface;
 

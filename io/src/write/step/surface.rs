@@ -1,10 +1,11 @@
 //! Surfaces that STEP can say.
 
+use super::quadric::{self, Quadric};
 use super::seam;
 use brep::{Brep, Curve, ExactBrep, ExactFace, FacetView, Valid};
 use csg::{Sense, Solid, Surface};
 use glam::DVec3;
-use step_io::build::{Frame, SurfaceInput};
+use step_io::build::{CurveInput, FaceBoundInput, Frame, SurfaceInput};
 use step_io::model as m;
 use step_io::{AuthorError, Orientation, StepBuilder};
 
@@ -29,6 +30,7 @@ enum Form {
     Cone { radius: f64, half_angle_rad: f64 },
     Sphere { radius: f64 },
     Torus { ring: f64, tube: f64 },
+    Quadric(Quadric),
 }
 
 /// The surface of a face, or why there is none.
@@ -91,10 +93,23 @@ pub(super) fn describe(
         Surface::Torus { .. } => {
             return Err(format!("surface {id} is a torus that crosses itself"));
         }
+        Surface::Quadric(form)
+            if let Some((quadric, outward)) =
+                quadric::of(&form, exact, face, farthest(facet, form.center)) =>
+        {
+            let at = farthest(facet, form.center);
+            (
+                Form::Quadric(quadric),
+                form.center,
+                form.axes[2],
+                outward,
+                at,
+            )
+        }
         _ => {
             let degree = primitive.polynomial.degree();
             return Err(format!(
-                "surface {id}, of degree {degree}, is no plane, cylinder, cone, sphere or torus"
+                "surface {id}, of degree {degree}, has no form in STEP"
             ));
         }
     };
@@ -152,7 +167,10 @@ impl Described {
 
     /// Whether the surface can be a face without edges.
     pub(super) fn is_closed(&self) -> bool {
-        matches!(self.form, Form::Sphere { .. } | Form::Torus { .. })
+        matches!(
+            self.form,
+            Form::Sphere { .. } | Form::Torus { .. } | Form::Quadric(Quadric::Ellipsoid(_))
+        )
     }
 
     /// The surface for a face with loops, in millimetres.
@@ -163,6 +181,7 @@ impl Described {
             ref_dir: (self.across + DVec3::ZERO).to_array(),
         };
         match self.form {
+            Form::Quadric(quadric) => quadric.input(self.origin, scale),
             Form::Plane => SurfaceInput::Plane(frame),
             Form::Cylinder { radius } => SurfaceInput::Cylinder(frame, radius * scale),
             Form::Cone {
@@ -174,12 +193,39 @@ impl Described {
         }
     }
 
+    /// All of an ellipsoid: its loop runs from pole to pole and back.
+    fn whole_ellipsoid(
+        &self,
+        [x, _, pole]: [DVec3; 3],
+        builder: &mut StepBuilder,
+        scale: f64,
+    ) -> Result<m::AdvancedFaceId, AuthorError> {
+        let end = |side: f64| ((self.origin + pole * side) * scale).to_array();
+        let [from, to] = [builder.vertex(end(-1.0))?, builder.vertex(end(1.0))?];
+        let frame = Frame {
+            origin: (self.origin * scale).to_array(),
+            axis: x.cross(pole).normalize().to_array(),
+            ref_dir: x.normalize().to_array(),
+        };
+        let (a, c) = (x.length() * scale, pole.length() * scale);
+        let meridian = builder.edge(from, to, CurveInput::Ellipse(frame, a, c))?;
+        let ring = vec![
+            (meridian, Orientation::Forward),
+            (meridian, Orientation::Reversed),
+        ];
+        let bounds = vec![FaceBoundInput::outer(ring)];
+        builder.face(self.input(scale), self.orientation, bounds)
+    }
+
     /// A face without edges: all of a sphere or torus, whose loop is a single vertex.
     pub(super) fn whole(
         &self,
         builder: &mut StepBuilder,
         scale: f64,
     ) -> Result<m::AdvancedFaceId, AuthorError> {
+        if let Form::Quadric(Quadric::Ellipsoid(axes)) = self.form {
+            return self.whole_ellipsoid(axes, builder, scale);
+        }
         let x = self.across;
         let origin = self.origin * scale;
         let author = builder.author();
