@@ -88,3 +88,36 @@ fn facets_instead_of_surfaces_are_told_and_fail_strict_runs() {
         "{file:?}"
     );
 }
+
+/// The thesis' files, assembled from its text: a ball of radius 2 without a unit block, 32π/3 − 1,
+/// and a block of side 3. Their surfaces are what OpenCASCADE finds, also by way of Bézier forms.
+#[test]
+fn solids_of_the_thesis_become_step_files() {
+    let files = crate::support::thesis_files();
+    let folder = files.path();
+    let bezier = folder.join("bored.cspg");
+    convert(&folder.join("bored.CSG"), &bezier, &["--level", "3", "-q"]).success();
+    let ball = 32.0 / 3.0 * std::f64::consts::PI - 1.0;
+    for (name, volume, planes, spheres) in [
+        ("bored.CSG", ball, 6, 1),
+        ("bored_little.CSG", ball, 6, 1),
+        ("bored.cspg", ball, 6, 1),
+        ("block.CSG", 27.0, 6, 0),
+    ] {
+        let step = folder.join("a.step");
+        convert(&folder.join(name), &step, &["-q", "--strict"]).success();
+        let file = &python::<StepFile>(&[step.to_str().unwrap()])[0];
+        let [solid] = &file.solids[..] else {
+            panic!("{name}: {file:?}");
+        };
+        assert!(solid.valid && file.loose == 0, "{name}: {solid:?}");
+        let off = (solid.volume - volume).abs();
+        assert!(off <= 1e-9 * volume, "{name}: {solid:?}");
+        let count = |kind: &str| solid.surfaces.get(kind).copied().unwrap_or(0);
+        assert_eq!(
+            [count("plane"), count("sphere")],
+            [planes, spheres],
+            "{name}"
+        );
+    }
+}
