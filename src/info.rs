@@ -1,6 +1,7 @@
 //! `csg2brep info IN`: what a model consists of, before any conversion.
 
 mod surface;
+mod tree;
 
 use crate::args::InfoArgs;
 use crate::failure::Failure;
@@ -9,7 +10,7 @@ use crate::output;
 use crate::run::Target;
 use crate::summary::{counted, triple};
 use crate::talk::Talk;
-use csg::{FormulaNode, Solid};
+use csg::{FormulaNode, Model, Solid};
 use serde_json::{Value, json};
 use surface::Description;
 
@@ -17,12 +18,12 @@ use surface::Description;
 pub(crate) fn run(args: InfoArgs, talk: Talk) -> Result<(), Failure> {
     let input = Input::new(args.input);
     let (solid, loaded) = input.solid(&args.clip, args.dialect, talk)?;
-    let nodes = loaded.model.nodes().len();
+    let model = &loaded.model;
     let text = if args.json {
-        let json = serde_json::to_string_pretty(&to_json(&solid, &input.name(), nodes));
+        let json = serde_json::to_string_pretty(&to_json(&solid, &input.name(), model));
         json.map_err(|error| Failure::Bug(error.to_string()))? + "\n"
     } else {
-        to_text(&solid, &input.name(), nodes)
+        to_text(&solid, &input.name(), model)
     };
     output::write_bytes(&Target::Stdout, text.as_bytes())
 }
@@ -33,10 +34,10 @@ fn literal_count(solid: &Solid) -> usize {
     literals.count()
 }
 
-fn to_text(solid: &Solid, name: &str, nodes: usize) -> String {
+fn to_text(solid: &Solid, name: &str, model: &Model) -> String {
     let mut lines = vec![format!(
         "{name}: {}, {}, {}",
-        counted(nodes as u64, "node"),
+        counted(model.nodes().len() as u64, "node"),
         counted(literal_count(solid) as u64, "half-space"),
         counted(solid.primitives.len() as u64, "surface")
     )];
@@ -48,14 +49,16 @@ fn to_text(solid: &Solid, name: &str, nodes: usize) -> String {
     let [min, max] = [solid.extent.min, solid.extent.max].map(|corner| triple(corner, size));
     let clipped = if solid.clipped { ", clipped" } else { "" };
     lines.push(format!("box: {min} to {max}{clipped}"));
+    lines.extend(tree::to_text(model));
+    lines.push("surfaces:".to_owned());
     for (at, primitive) in solid.primitives.iter().enumerate() {
         let surface = Description::of(primitive.surface(&solid.domain));
-        lines.push(format!("{at}: {}", surface.to_text(size)));
+        lines.push(format!("  {at}: {}", surface.to_text(size)));
     }
     lines.join("\n") + "\n"
 }
 
-fn to_json(solid: &Solid, name: &str, nodes: usize) -> Value {
+fn to_json(solid: &Solid, name: &str, model: &Model) -> Value {
     let surfaces = solid.primitives.iter().map(|primitive| {
         let mut value = Description::of(primitive.surface(&solid.domain)).to_json();
         value["degree"] = json!(primitive.polynomial.degree());
@@ -67,7 +70,8 @@ fn to_json(solid: &Solid, name: &str, nodes: usize) -> Value {
     json!({
         "schema_version": 1,
         "name": name,
-        "nodes": nodes,
+        "nodes": model.nodes().len(),
+        "tree": tree::to_json(model),
         "half_spaces": literal_count(solid),
         "box": extent,
         "clipped": solid.clipped,

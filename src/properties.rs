@@ -8,7 +8,7 @@ use crate::pipeline::{self, Boundary};
 use crate::progress::Progress;
 use crate::report::Report;
 use crate::run::{Job, Target};
-use crate::summary::{counted, number, rounded_up, triple};
+use crate::summary::{counted, number, triple};
 use crate::talk::Talk;
 use crate::{mesh_file, output};
 use brep::{Brep, Properties, ShellId, Shells, Valid};
@@ -86,8 +86,6 @@ struct Measured {
 fn origin(report: &Report) -> String {
     let mut facts = Vec::new();
     facts.extend(report.deviation());
-    let measured = report.largest_deviation.map(rounded_up);
-    facts.extend(measured.map(|distance| format!("deviation {distance} (measured)")));
     if report.uncertified_count > 0 {
         let cells = counted(report.uncertified_count, "cell");
         facts.push(format!("{cells} not certified"));
