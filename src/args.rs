@@ -70,7 +70,7 @@ pub(crate) enum Command {
     },
     /// Print the manual page
     Man,
-    /// Print the JSON schema of what `--report` or `check --json` writes
+    /// Print the JSON schema of what `--report`, `check --json` or `properties --json` writes
     ReportSchema {
         /// Which of them
         #[arg(value_name = "REPORT", default_value = "convert")]
@@ -339,6 +339,8 @@ pub(crate) enum SchemaOf {
     Convert,
     /// What check --json prints
     Check,
+    /// What properties --json prints
+    Properties,
 }
 
 /// Formats of meshes that can be checked and measured.

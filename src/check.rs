@@ -12,8 +12,8 @@ use crate::{memory, output};
 use brep::Inspection;
 use glam::DVec3;
 use io::read::mesh::{Joining, Mesh};
-pub(crate) use report::schema;
-use report::{CheckReport, Defects, JoinedBy, Place};
+pub(crate) use report::CheckReport;
+use report::{Defects, JoinedBy, Place};
 
 /// Reads, inspects, and prints on standard output; defects end in a failure.
 pub(crate) fn run(args: CheckArgs) -> Result<(), Failure> {

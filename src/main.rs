@@ -20,6 +20,7 @@ mod progress;
 mod properties;
 mod report;
 mod run;
+mod schema;
 mod shell;
 mod streams;
 mod summary;
@@ -76,8 +77,9 @@ fn dispatch(cli: Cli, talk: Talk) -> Result<(), Failure> {
 
 fn report_schema(of: SchemaOf) -> Result<(), Failure> {
     let schema = match of {
-        SchemaOf::Convert => Report::schema(),
-        SchemaOf::Check => check::schema(),
+        SchemaOf::Convert => schema::of::<Report>(),
+        SchemaOf::Check => schema::of::<check::CheckReport>(),
+        SchemaOf::Properties => schema::of::<properties::PropertiesReport>(),
     };
     let schema = schema.map_err(|error| Failure::Bug(error.to_string()))?;
     output::write_bytes(&Target::Stdout, schema.as_bytes())

@@ -1,5 +1,7 @@
 //! `csg2brep properties IN`: area, volume, centroid and inertia, of each solid and of all.
 
+mod json;
+
 use crate::args::PropertiesArgs;
 use crate::convert::new_report;
 use crate::failure::Failure;
@@ -13,7 +15,7 @@ use crate::talk::Talk;
 use crate::{mesh_file, output};
 use brep::{Brep, Properties, ShellId, Shells, Valid};
 use io::read::mesh;
-use serde_json::{Value, json};
+pub(crate) use json::PropertiesReport;
 
 /// Converts if need be, measures, and prints on standard output.
 pub(crate) fn run(args: PropertiesArgs, talk: Talk) -> Result<(), Failure> {
@@ -52,7 +54,7 @@ pub(crate) fn run(args: PropertiesArgs, talk: Talk) -> Result<(), Failure> {
         Measured::new(&brep, source)
     };
     let text = if args.json {
-        let json = serde_json::to_string_pretty(&measured.to_json());
+        let json = serde_json::to_string_pretty(&PropertiesReport::of(&measured));
         json.map_err(|error| Failure::Bug(error.to_string()))? + "\n"
     } else {
         measured.to_text()
@@ -158,32 +160,6 @@ impl Measured {
             .map(|shell| self.shells.shells[shell.0 as usize].genus)
             .sum()
     }
-
-    fn to_json(&self) -> Value {
-        let solids = self.solids.iter().enumerate().map(|(at, properties)| {
-            let mut value = values(properties);
-            value["shells"] = json!(self.shells_of(at).count());
-            value["genus"] = json!(self.genus(at));
-            value
-        });
-        let solids: Vec<Value> = solids.collect();
-        let report = self.source.report.as_ref();
-        let mut total = values(&self.total);
-        total["volume_interval"] = json!(report.and_then(|report| report.volume_interval));
-        json!({
-            "schema_version": 1,
-            "name": self.source.name,
-            "format": self.source.format,
-            "unit": self.source.unit,
-            "triangles": self.triangles,
-            "proved_distance": report.and_then(|report| report.proved_distance),
-            "largest_deviation": report.and_then(|report| report.largest_deviation),
-            "uncertified_count": report.map(|report| report.uncertified_count),
-            "warnings": self.source.warnings,
-            "total": total,
-            "solids": solids,
-        })
-    }
 }
 
 fn measures(of: &Properties, volume_interval: Option<[f64; 2]>) -> Vec<String> {
@@ -211,18 +187,4 @@ fn measures(of: &Properties, volume_interval: Option<[f64; 2]>) -> Vec<String> {
 fn outward(low: f64, high: f64) -> [f64; 2] {
     const MARGIN: f64 = 1e-8;
     [low - MARGIN * low.abs(), high + MARGIN * high.abs()]
-}
-
-/// Numbers that JSON does not have become null.
-fn values(of: &Properties) -> Value {
-    let rows = [0, 1, 2].map(|row| of.inertia.row(row).to_array());
-    let is_empty = of.bounds.is_empty();
-    let corners = (!is_empty).then(|| [of.bounds.min.to_array(), of.bounds.max.to_array()]);
-    json!({
-        "area": of.area,
-        "volume": of.volume,
-        "centroid": (!is_empty).then(|| of.centroid.to_array()),
-        "inertia": rows,
-        "box": corners,
-    })
 }

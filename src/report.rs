@@ -273,13 +273,6 @@ impl StepReport {
 }
 
 impl Report {
-    /// The JSON schema that all reports follow, indented, with a final line feed.
-    pub(crate) fn schema() -> serde_json::Result<String> {
-        let settings = schemars::generate::SchemaSettings::draft2020_12().for_serialize();
-        let schema = settings.into_generator().into_root_schema_for::<Self>();
-        Ok(serde_json::to_string_pretty(&schema)? + "\n")
-    }
-
     /// Nothing done yet.
     pub(crate) fn new(input: InputReport, settings: SettingsReport) -> Self {
         Self {

@@ -1,4 +1,4 @@
-//! The JSON report and its published schema, `docs/report.schema.json`.
+//! The JSON report and what `properties --json` prints, and their published schemas in `docs/`.
 
 #![allow(clippy::unwrap_used, reason = "a panic is how a test fails")]
 
@@ -14,25 +14,28 @@ fn csg2brep() -> assert_cmd::Command {
     assert_cmd::cargo::cargo_bin_cmd!("csg2brep")
 }
 
-fn schema() -> PathBuf {
-    Path::new(ROOT).join("docs/report.schema.json")
+fn schema(name: &str) -> PathBuf {
+    Path::new(ROOT).join(format!("docs/{name}.schema.json"))
 }
 
-/// After an intended change: `cargo run -- report-schema > docs/report.schema.json`.
+/// After an intended change: `cargo run -- report-schema convert > docs/report.schema.json`, and
+/// likewise `properties`.
 #[test]
-fn the_published_schema_is_up_to_date() {
-    let printed = csg2brep().arg("report-schema").assert().success();
-    let printed = String::from_utf8(printed.get_output().stdout.clone()).unwrap();
-    assert_eq!(printed, fs::read_to_string(schema()).unwrap());
+fn the_published_schemas_are_up_to_date() {
+    for (of, name) in [("convert", "report"), ("properties", "properties")] {
+        let printed = csg2brep().args(["report-schema", of]).assert().success();
+        let printed = String::from_utf8(printed.get_output().stdout.clone()).unwrap();
+        assert_eq!(printed, fs::read_to_string(schema(name)).unwrap());
+    }
 }
 
-/// Writes reports into a folder and lets the PyPI package `jsonschema` judge them.
-fn validate(folder: &Path) -> (bool, String) {
+/// Lets the PyPI package `jsonschema` judge the JSON files in a folder by the schema of this name.
+fn validate(name: &str, folder: &Path) -> (bool, String) {
     let script = Path::new(ROOT).join("tests/python/validate_reports.py");
     let mut command = Command::new(support::validators());
     let output = command
         .arg(script)
-        .arg(schema())
+        .arg(schema(name))
         .arg(folder)
         .output()
         .unwrap();
@@ -104,7 +107,7 @@ fn every_fixtures_report_follows_the_schema() {
     .code(4);
     fs::remove_file(folder.path().join("out.stl")).unwrap();
 
-    let (sound, text) = validate(folder.path());
+    let (sound, text) = validate("report", folder.path());
     assert!(
         sound && text.contains(&format!("{} reports", count + 4)),
         "{text}"
@@ -113,9 +116,38 @@ fn every_fixtures_report_follows_the_schema() {
     // The judge must be able to say no.
     let broken = fs::read_to_string(report("clipped")).unwrap();
     fs::write(report("broken"), broken.replace("\"genus\"", "\"gender\"")).unwrap();
-    let (sound, text) = validate(folder.path());
+    let (sound, text) = validate("report", folder.path());
     assert!(
         !sound && text.contains("broken.json") && text.contains("genus"),
         "{text}"
     );
+}
+
+#[test]
+fn properties_follow_their_schema() {
+    let folder = tempfile::tempdir().unwrap();
+    let fixture = |name: &str| Path::new(ROOT).join("fixtures").join(name);
+    let mesh = folder.path().join("ball.glb");
+    let mut command = csg2brep();
+    command.arg(fixture("solids/S1_sphere.csg")).arg("-o");
+    command.arg(&mesh).assert().success();
+    let models = [
+        mesh.clone(),
+        fixture("solids/S4_64_spheres.csg"),
+        fixture("third_party/openscad/cylinder-tests.csg"),
+        fixture("third_party/openscad/nullspace-difference.csg"),
+    ];
+    for (at, model) in models.iter().enumerate() {
+        let mut command = csg2brep();
+        command.args(["properties", "--json", "-q", "--tolerance", "3%"]);
+        let printed = command.arg(model).assert().success();
+        let path = folder.path().join(format!("{at}.json"));
+        fs::write(path, &printed.get_output().stdout).unwrap();
+    }
+    fs::remove_file(mesh).unwrap();
+    let (sound, text) = validate("properties", folder.path());
+    assert!(sound && text.contains("4 reports"), "{text}");
+    // A name that does not exist is no report.
+    fs::write(folder.path().join("5.json"), "{\"volume\": 1}").unwrap();
+    assert!(!validate("properties", folder.path()).0);
 }

@@ -116,15 +116,6 @@ pub(crate) struct Place {
     pub(crate) position: Option<[f64; 3]>,
 }
 
-/// JSON schema of the report.
-pub(crate) fn schema() -> serde_json::Result<String> {
-    let settings = schemars::generate::SchemaSettings::draft2020_12().for_serialize();
-    let schema = settings
-        .into_generator()
-        .into_root_schema_for::<CheckReport>();
-    Ok(serde_json::to_string_pretty(&schema)? + "\n")
-}
-
 impl CheckReport {
     pub(crate) fn new(name: String, mesh: &Mesh, joined_by: JoinedBy, found: &Inspection) -> Self {
         let box_of = |bounds: csg::Aabb| [bounds.min.to_array(), bounds.max.to_array()];
