@@ -65,7 +65,7 @@ pub(crate) struct Report {
     pub(crate) imprecise_primitives: Vec<Imprecise>,
     /// Vertices doubled where the boundary touches itself.
     pub(crate) split_vertices: u64,
-    /// Closed pieces that were dropped: no larger than four cells, and among cells that are not certified.
+    /// Closed pieces that were dropped: no larger than 2.5 cells, and among cells that are not certified.
     pub(crate) specks: u64,
     /// Faces like that which became part of a neighbour.
     pub(crate) crumbs: u64,

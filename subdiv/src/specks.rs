@@ -11,8 +11,9 @@ use csg::Domain;
 use glam::DVec3;
 use rustc_hash::FxHashSet;
 
-/// Diagonal of a speck in units of a cell's longest edge, at most.
-const CELLS: f64 = 4.0;
+/// Diagonal of a speck in units of a cell's longest edge, at most. Larger ones may be real: a
+/// tolerance may be coarse.
+const CELLS: f64 = 2.5;
 
 /// No number.
 const NONE: u32 = u32::MAX;
