@@ -118,13 +118,18 @@ impl Piece {
         let [from, to] = self.range;
         let [first, second] = match &self.curve {
             Curve::Traced { points } => {
-                let cut = points.len().min(whole(t) + 1);
+                // A point beyond the last but one is on the last chord: both parts have an end.
+                let cut = (whole(t) + 1).min(points.len() - 1);
                 let mut first = points[..cut].to_vec();
                 first.push(at);
                 let mut second = vec![at];
                 second.extend_from_slice(&points[cut..]);
                 for part in [&mut first, &mut second] {
                     part.dedup();
+                    // A piece without length has two ends all the same.
+                    if let [only] = part[..] {
+                        part.push(only);
+                    }
                 }
                 [first, second].map(|points| {
                     let last = (points.len() - 1) as f64;
