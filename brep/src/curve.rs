@@ -396,6 +396,33 @@ impl Curve {
         }
     }
 
+    /// Whether both are one circle, or one ellipse, in the same sense: the other's centre and axes
+    /// are this one's up to `near`, in model units.
+    pub(crate) fn is_one_conic(&self, other: &Self, near: f64) -> bool {
+        let ((
+            Self::Circle { center, across },
+            Self::Circle {
+                center: middle,
+                across: axes,
+            },
+        )
+        | (
+            Self::Ellipse { center, across },
+            Self::Ellipse {
+                center: middle,
+                across: axes,
+            },
+        )) = (self, other)
+        else {
+            return false;
+        };
+        let turn = |[x, y]: [DVec3; 2]| x.cross(y);
+        let is_on = |at: DVec3| self.point(self.parameter(at)).distance(at) <= near;
+        center.distance(*middle) <= near
+            && turn(*across).dot(turn(*axes)) > 0.0
+            && axes.iter().all(|&axis| is_on(*center + axis))
+    }
+
     /// The parameter of a point on or near the curve; for angles in (−π, π].
     pub fn parameter(&self, point: DVec3) -> f64 {
         match self {

@@ -35,7 +35,7 @@ const FACETED: [&str; 8] = [
     "offset",
 ];
 /// Files with such solids, the facets of which are too thin: nothing is written.
-const REFUSED: [&str; 1] = ["module-recursion"];
+const REFUSED: [&str; 2] = ["hull", "module-recursion"];
 
 fn fixtures() -> Vec<PathBuf> {
     let is_whole = std::env::var("STEP_FIXTURES").is_ok_and(|value| value == "all");

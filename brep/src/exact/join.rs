@@ -67,39 +67,7 @@ impl Piece {
             (Curve::Line { direction: d, .. }, Curve::Line { direction: e, .. }) => {
                 (d.dot(*e) > 0.0 && d.cross(*e).length() <= SAME).then(|| self.curve.clone())?
             }
-            (
-                Curve::Circle {
-                    center,
-                    across: [x, y],
-                },
-                Curve::Circle {
-                    center: other,
-                    across: [u, v],
-                },
-            )
-            | (
-                Curve::Ellipse {
-                    center,
-                    across: [x, y],
-                },
-                Curve::Ellipse {
-                    center: other,
-                    across: [u, v],
-                },
-            ) => {
-                // One circle if the other axes lie on it, in the same sense.
-                let (m, n) = (x.cross(*y), u.cross(*v));
-                let far = |axis: DVec3| {
-                    let at = *center + axis;
-                    self.curve.point(self.curve.parameter(at)).distance(at)
-                };
-                let is_same = center.distance(*other) <= near
-                    && m.dot(n) > 0.0
-                    && far(*u) <= near
-                    && far(*v) <= near;
-                if !is_same {
-                    return None;
-                }
+            (one, other) if one.is_one_conic(other, near) => {
                 range[1] = range[1].min(range[0] + TAU);
                 self.curve.clone()
             }

@@ -484,38 +484,13 @@ impl Piece {
                     0.0
                 }
             }
-            (
-                Curve::Circle {
-                    center,
-                    across: [x, y],
-                },
-                Curve::Circle {
-                    center: o,
-                    across: [u, v],
-                },
-            )
-            | (
-                Curve::Ellipse {
-                    center,
-                    across: [x, y],
-                },
-                Curve::Ellipse {
-                    center: o,
-                    across: [u, v],
-                },
-            ) => {
-                let is_one = center.distance(*o) <= near
-                    && x.cross(*y).dot(u.cross(*v)) > 0.0
-                    && on(&self.curve, *o + *u)
-                    && on(&self.curve, *o + *v);
-                if is_one {
-                    let size = x.length().min(y.length());
-                    let start = self.curve.parameter(other.curve.point(other.range[0]));
-                    let start = self.range[0] + (start - self.range[0]).rem_euclid(TAU);
-                    spans(start, TAU) * size
-                } else {
-                    0.0
-                }
+            (Curve::Circle { across, .. } | Curve::Ellipse { across, .. }, conic)
+                if self.curve.is_one_conic(conic, near) =>
+            {
+                let size = across[0].length().min(across[1].length());
+                let start = self.curve.parameter(other.curve.point(other.range[0]));
+                let start = self.range[0] + (start - self.range[0]).rem_euclid(TAU);
+                spans(start, TAU) * size
             }
             (Curve::Traced { points: a }, Curve::Traced { points: b }) => {
                 let [gap, far] = [0, 1].map(|end| self.ends[end].distance(other.ends[end]));
