@@ -1,8 +1,62 @@
 //! Where a polynomial keeps its sign in a simplex (thesis 4.4).
 
 use crate::bernstein::for_each_index;
-use crate::lipschitz;
+use crate::lipschitz::Lipschitz;
 use csg::Ternary;
+
+/// A polynomial in a simplex, in Bernstein form.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Local<'a> {
+    /// The simplex' type.
+    pub kind: u8,
+    /// The polynomial's degree.
+    pub degree: usize,
+    /// Its coefficients.
+    pub coefficients: &'a [f64],
+    /// Bound on their absolute error.
+    pub error: f64,
+    /// The smallest and the largest of them.
+    pub range: [f64; 2],
+}
+
+/// A proof that a polynomial keeps its sign in a simplex: what tells the criteria apart.
+pub(crate) trait KeepsSign {
+    /// `In` when p < 0 is proved in the whole simplex, `Out` when p > 0 is.
+    fn sign(polynomial: &Local<'_>) -> Ternary;
+}
+
+struct Bezier;
+
+impl KeepsSign for Bezier {
+    fn sign(&Local { range, error, .. }: &Local<'_>) -> Ternary {
+        let [low, high] = range;
+        if low > error {
+            Ternary::Out
+        } else if high < -error {
+            Ternary::In
+        } else {
+            Ternary::Unknown
+        }
+    }
+}
+
+struct Rivlin;
+
+impl KeepsSign for Rivlin {
+    /// The bound needs the sign at every coefficient but the extreme one.
+    fn sign(polynomial: &Local<'_>) -> Ternary {
+        let simple = Bezier::sign(polynomial);
+        if simple != Ternary::Unknown {
+            simple
+        } else if rivlin_lower_bound(polynomial, 1.0) > polynomial.error {
+            Ternary::Out
+        } else if rivlin_lower_bound(polynomial, -1.0) > polynomial.error {
+            Ternary::In
+        } else {
+            Ternary::Unknown
+        }
+    }
+}
 
 /// How the range of a polynomial in a simplex is bounded.
 #[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
@@ -74,30 +128,19 @@ pub(crate) fn classify(
                 (low.min(*c), high.max(*c))
             }),
     };
-    let value = if criterion == Criterion::Lipschitz {
-        lipschitz::classify(kind, degree, coefficients, error)
-    } else if low > error {
-        Ternary::Out
-    } else if high < -error {
-        Ternary::In
-    } else {
-        match criterion {
-            Criterion::Bezier | Criterion::Lipschitz => Ternary::Unknown,
-            Criterion::Rivlin => by_rivlin(degree, coefficients, error),
-        }
+    let polynomial = Local {
+        kind,
+        degree,
+        coefficients,
+        error,
+        range: [low, high],
+    };
+    let value = match criterion {
+        Criterion::Bezier => Bezier::sign(&polynomial),
+        Criterion::Rivlin => Rivlin::sign(&polynomial),
+        Criterion::Lipschitz => Lipschitz::sign(&polynomial),
     };
     Class { value, low, high }
-}
-
-/// The bound needs the sign at every coefficient but the extreme one.
-fn by_rivlin(degree: usize, coefficients: &[f64], error: f64) -> Ternary {
-    if rivlin_lower_bound(degree, coefficients, 1.0) > error {
-        Ternary::Out
-    } else if rivlin_lower_bound(degree, coefficients, -1.0) > error {
-        Ternary::In
-    } else {
-        Ternary::Unknown
-    }
 }
 
 fn range<const N: usize>(coefficients: &[f64]) -> (f64, f64) {
@@ -114,11 +157,12 @@ fn range<const N: usize>(coefficients: &[f64]) -> (f64, f64) {
 
 /// Lower bound of `sign · p`: with c_m the smallest coefficient and c_next the one after it,
 /// p ≥ c_next + (c_m − c_next)·B_m, and the Bernstein polynomial B_m is largest at m/n.
-fn rivlin_lower_bound(degree: usize, coefficients: &[f64], sign: f64) -> f64 {
+fn rivlin_lower_bound(polynomial: &Local<'_>, sign: f64) -> f64 {
+    let degree = polynomial.degree;
     let mut smallest = (f64::INFINITY, [0; 4]);
     let mut next = f64::INFINITY;
     for_each_index(degree, |at, exponents| {
-        let c = sign * coefficients[at];
+        let c = sign * polynomial.coefficients[at];
         if c < smallest.0 {
             next = smallest.0;
             smallest = (c, exponents);

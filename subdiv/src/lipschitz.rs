@@ -7,45 +7,55 @@
 //! possible constant. Lengths are measured in the unit cube of which the simplex is a part.
 
 use crate::bernstein::{for_each_index, index};
+use crate::classify::{KeepsSign, Local};
 use csg::Ternary;
 
 /// Squared distance of the barycentre from the farthest vertices of types 0, 1 and 2.
 const SQUARED_RADII: [f64; 3] = [0.875, 0.546_875, 0.328_125];
 
-/// Classifies against `p ≤ 0` in a simplex of type `kind`; `error` bounds the coefficients'.
-#[must_use]
-pub(crate) fn classify(kind: u8, degree: usize, coefficients: &[f64], error: f64) -> Ternary {
-    let Some(of_gradient) = degree.checked_sub(1) else {
-        return Ternary::Unknown;
-    };
-    let mut squared_slope = 0.0f64;
-    let n = degree as f64;
-    for_each_index(of_gradient, |at, [_, j, k, l]| {
-        // In both degrees the coefficient that has the (j, k, l) of this one stands at its place.
-        let along = |a: usize, b: usize, c: usize| {
-            n * (coefficients[index(j + a, k + b, l + c)] - coefficients[at])
+pub(crate) struct Lipschitz;
+
+impl KeepsSign for Lipschitz {
+    fn sign(polynomial: &Local<'_>) -> Ternary {
+        let &Local {
+            kind,
+            degree,
+            coefficients,
+            error,
+            ..
+        } = polynomial;
+        let Some(of_gradient) = degree.checked_sub(1) else {
+            return Ternary::Unknown;
         };
-        let gradient = in_frame(kind, [along(1, 0, 0), along(0, 1, 0), along(0, 0, 1)]);
-        squared_slope = squared_slope.max(gradient.iter().map(|g| g * g).sum());
-    });
-    let mut middle = 0.0;
-    let mut largest = 0.0f64;
-    for_each_index(degree, |at, exponents| {
-        middle += at_barycentre(exponents) * coefficients[at];
-        largest = largest.max(coefficients[at].abs());
-    });
-    let variation = (squared_slope * SQUARED_RADII[usize::from(kind)]).sqrt();
-    // Rounding of the sum and of the weights, relative to the largest coefficient; of the slope,
-    // and what the coefficients' own error makes of it: each of its
-    // three components is off by at most 6n·error.
-    let sum = (coefficients.len() + 8 * degree + 8) as f64 * f64::EPSILON * largest;
-    let slack = sum + (1.0 + 14.0 * n) * error + variation * 16.0 * f64::EPSILON;
-    if middle > variation + slack {
-        Ternary::Out
-    } else if middle < -variation - slack {
-        Ternary::In
-    } else {
-        Ternary::Unknown
+        let mut squared_slope = 0.0f64;
+        let n = degree as f64;
+        for_each_index(of_gradient, |at, [_, j, k, l]| {
+            // In both degrees the coefficient that has the (j, k, l) of this one stands at its place.
+            let along = |a: usize, b: usize, c: usize| {
+                n * (coefficients[index(j + a, k + b, l + c)] - coefficients[at])
+            };
+            let gradient = in_frame(kind, [along(1, 0, 0), along(0, 1, 0), along(0, 0, 1)]);
+            squared_slope = squared_slope.max(gradient.iter().map(|g| g * g).sum());
+        });
+        let mut middle = 0.0;
+        let mut largest = 0.0f64;
+        for_each_index(degree, |at, exponents| {
+            middle += at_barycentre(exponents) * coefficients[at];
+            largest = largest.max(coefficients[at].abs());
+        });
+        let variation = (squared_slope * SQUARED_RADII[usize::from(kind)]).sqrt();
+        // Rounding of the sum and of the weights, relative to the largest coefficient; of the slope,
+        // and what the coefficients' own error makes of it: each of its
+        // three components is off by at most 6n·error.
+        let sum = (coefficients.len() + 8 * degree + 8) as f64 * f64::EPSILON * largest;
+        let slack = sum + (1.0 + 14.0 * n) * error + variation * 16.0 * f64::EPSILON;
+        if middle > variation + slack {
+            Ternary::Out
+        } else if middle < -variation - slack {
+            Ternary::In
+        } else {
+            Ternary::Unknown
+        }
     }
 }
 
@@ -116,7 +126,14 @@ mod tests {
                     } else {
                         Ternary::Unknown
                     };
-                    assert_eq!(classify(simplex.kind(), 1, c, 1e-15), expected);
+                    let local = Local {
+                        kind: simplex.kind(),
+                        degree: 1,
+                        coefficients: c,
+                        error: 1e-15,
+                        range: [0.0; 2],
+                    };
+                    assert_eq!(Lipschitz::sign(&local), expected);
                     decided[usize::from(expected == Ternary::Unknown)] += 1;
                 }
                 layer = layer

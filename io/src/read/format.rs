@@ -76,6 +76,8 @@ pub enum UnreadableFormat {
 const MESH: &str = "a mesh has lost its set operations: start from the CSG model it was made of";
 const LATER: &str = "reading it is not supported yet";
 const UNPACK: &str = "unpack it first";
+const SUBDIVISION: &str = "csg2brep thesis propsimpl -V tells its volume; for a boundary write triangles instead, \
+                           as in csg2brep thesis subsimpl -O a, or start from the .cspg or .CSG file";
 
 /// What begins with what, in bytes.
 const SIGNATURES: [(&[u8], &str, &str); 9] = [
@@ -125,6 +127,10 @@ pub fn sniff(bytes: &[u8], name: &str) -> Result<Format, UnreadableFormat> {
         "cspg" => return Ok(Format::ThesisCspg),
         "wfr" => return Ok(Format::ThesisWfr),
         _ => {}
+    }
+    // The letter and a count of sectors, whose first or last byte is zero.
+    if let [b'S', 0, ..] | [b'S', _, _, _, 0, ..] = bytes {
+        return foreign("a subdivision tree of the thesis", SUBDIVISION);
     }
     // The Boolean of its first node; no text begins so.
     if let [0 | 1, ..] = bytes {
@@ -193,6 +199,15 @@ mod tests {
         let one_face = [b"A".as_slice(), &[0; 76]].concat();
         assert_eq!(sniff(&one_face, "-"), Ok(Format::ThesisApl));
         assert_eq!(sniff(b"A", "a.apl"), Ok(Format::ThesisApl));
+    }
+
+    #[test]
+    fn subdivision_trees_are_told_apart_in_both_byte_orders() {
+        for bytes in [b"S\0\0\0\x06@\0", b"S\x06\0\0\0\0@"] {
+            let tree = sniff(bytes, "a.csg").unwrap_err().to_string();
+            assert!(tree.contains("a subdivision tree") && tree.contains("propsimpl -V"));
+        }
+        assert_eq!(sniff(b"S = 3;", "a.csg"), Ok(Format::ScadCsg));
     }
 
     #[test]
