@@ -141,10 +141,9 @@ fn silhouettes_have_the_areas_of_their_formulas() {
         let tangents = r * (far * far - r * r).sqrt();
         cosine * (tangents + r * r * (PI - (r / far).acos()))
     };
-    // Semi-axes 2, 1, 0.5: right is (1, 1, 0)/√2, up (−1, 1, 2)/√6.
+    // Semi-axes 2, 1, 0.5: right is (1, 1, 0)/√2, so (4 + 1)/2; up (−1, 1, 2)/√6, so (4 + 1 + 4/4)/6.
     let ellipsoid = PI * ((0.25 + 1.0 + 4.0) / 3.0_f64).sqrt();
-    let [wide, high] =
-        [(4.0 + 1.0) / 2.0, (4.0 + 1.0 + 4.0 * 0.25) / 6.0].map(|s: f64| 2.0 * s.sqrt());
+    let [wide, high] = [2.5_f64, 1.0].map(|s| 2.0 * s.sqrt());
     let ring = PI * (1.25_f64.powi(2) - 0.75_f64.powi(2));
     let stadium = 2.0 * 0.5 + PI * 0.0625;
     let cases = [
