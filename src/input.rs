@@ -8,7 +8,7 @@ use crate::talk::Talk;
 use crate::thesis::pipe::DialectArgs;
 use csg::Solid;
 use io::read::format::{Format, sniff};
-use io::read::{Diagnostic, ReadOptions, Reading, decode, scad_csg};
+use io::read::{Diagnostic, ReadOptions, decode, scad_csg};
 use io::thesis::{power_form, sectors, solid};
 use std::io::Read as _;
 use std::path::{Path, PathBuf};
@@ -31,6 +31,8 @@ pub(crate) struct Loaded {
     /// The text, for excerpts in warnings.
     pub(crate) source: String,
     pub(crate) warnings: Vec<Diagnostic>,
+    /// Nodes for which something flat was taken.
+    pub(crate) approximated_nodes: u64,
 }
 
 impl Input {
@@ -122,6 +124,7 @@ impl Input {
                     format,
                     source: String::new(),
                     warnings: Vec::new(),
+                    approximated_nodes: 0,
                 });
             }
             Format::ThesisCspg => {
@@ -134,6 +137,7 @@ impl Input {
                     format,
                     source: String::new(),
                     warnings: Vec::new(),
+                    approximated_nodes: 0,
                 });
             }
             Format::ThesisApl | Format::ThesisWfr => {
@@ -145,11 +149,12 @@ impl Input {
         }
         let source = decode::decode(bytes, &name).map_err(from_decoding)?;
         match scad_csg::read_with(&source, &name, &options, &self.folder()) {
-            Ok(Reading { model, warnings }) => Ok(Loaded {
-                model,
+            Ok(reading) => Ok(Loaded {
+                model: reading.model,
                 format,
                 source,
-                warnings,
+                warnings: reading.warnings,
+                approximated_nodes: reading.approximated_nodes,
             }),
             Err(diagnostics) => Err(Failure::Diagnostics {
                 diagnostics,

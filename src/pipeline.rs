@@ -55,6 +55,7 @@ pub(crate) fn run(
         job.input.parse(bytes, format, job.read, job.dialect)
     })?;
     report.input.format = Some(loaded.format.name());
+    report.approximated_nodes = loaded.approximated_nodes;
     progress.hidden_while(|| warn(&loaded, talk, report));
 
     progress.begin("preparing");
@@ -209,9 +210,19 @@ fn subdivided(
     let fragments = subdivide(solid, job, rule, progress, report)?;
     stop_if_interrupted()?;
     progress.begin("stitching");
-    let (brep, moved) = report.timed("stitching", || stitch(&fragments))?;
+    let narrow = match rule {
+        Rule::Tolerance(tolerance) | Rule::Topology { finest: tolerance } => tolerance,
+        Rule::Level(_) => 0.0,
+    };
+    let narrow = if report.proved_topology { 0.0 } else { narrow };
+    let (brep, moved, ghosts) = report.timed("stitching", || {
+        let (brep, moved) = stitch(&fragments)?;
+        let (brep, ghosts) = brep::dissolve_ghosts(brep, solid, narrow);
+        Ok::<_, Failure>((brep, moved, ghosts))
+    })?;
     stop_if_interrupted()?;
     report.add_deviation(moved);
+    report.ghost_faces = ghosts as u64;
     Ok(brep)
 }
 

@@ -3,7 +3,7 @@
 //! Lengths are in model units, times in seconds. Names are stable within a `schema_version`;
 //! what could not be measured or proved is null.
 
-use crate::summary::rounded_up;
+use crate::summary::{counted, rounded_up};
 use brep::{Brep, Groups, Properties, Quality, Retriangulated, Shells, Tessellated};
 use io::write::step;
 use schemars::JsonSchema;
@@ -69,6 +69,12 @@ pub(crate) struct Report {
     pub(crate) specks: u64,
     /// Faces like that which became part of a neighbour.
     pub(crate) crumbs: u64,
+    /// Faces narrower than the tolerance that the true boundary does not have, where surfaces
+    /// touch; each became part of a neighbour.
+    pub(crate) ghost_faces: u64,
+    /// Nodes of the model without a closed form, for which flat shapes were taken; the warnings say
+    /// how near they are. Everything else here is about the model with those shapes.
+    pub(crate) approximated_nodes: u64,
     /// Cells in which facets of different surfaces cross by rounding of their positions; elsewhere
     /// none cross.
     pub(crate) crossing_cells: u64,
@@ -300,6 +306,8 @@ impl Report {
             split_vertices: 0,
             specks: 0,
             crumbs: 0,
+            ghost_faces: 0,
+            approximated_nodes: 0,
             crossing_cells: 0,
             quality: None,
             step: None,
@@ -321,20 +329,23 @@ impl Report {
         if let Some(distance) = self.largest_deviation {
             let is_exact = distance <= rounding && self.proved_topology;
             let measured = || format!("deviation {} (measured)", rounded_up(distance));
-            return Some(if is_exact {
-                "exact".to_owned()
-            } else {
-                measured()
-            });
+            return Some(if is_exact { self.exact() } else { measured() });
         }
         let distance = self.proved_distance?;
         let is_whole = self.uncertified_count == 0 && self.one_way_cells == 0;
         let bound = match (distance <= rounding, is_whole) {
-            (true, true) => return Some("exact".to_owned()),
+            (true, true) => return Some(self.exact()),
             (true, false) => return None,
             (false, _) => rounded_up(distance),
         };
         Some(format!("deviation <= {bound}"))
+    }
+
+    fn exact(&self) -> String {
+        match self.approximated_nodes {
+            0 => "exact".to_owned(),
+            count => format!("exact but for {}", counted(count, "approximated node")),
+        }
     }
 
     /// Runs a stage and notes its duration.

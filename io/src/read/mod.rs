@@ -78,4 +78,6 @@ pub struct Reading {
     pub model: csg::Model,
     /// What was dropped, ignored or taken in a way that the author may not expect.
     pub warnings: Vec<Diagnostic>,
+    /// Nodes without a closed form, for which something flat was taken; the warnings say how near.
+    pub approximated_nodes: u64,
 }

@@ -88,8 +88,7 @@ pub fn read_with(
         return Err(places.diagnostic(0..0, message, None).into());
     }
     let ast = parse::parse(source, name, &places)?;
-    let (model, warnings) = evaluate::evaluate(source, &ast, &places, *options, files)?;
-    Ok(Reading { model, warnings })
+    evaluate::evaluate(source, &ast, &places, *options, files)
 }
 
 #[cfg(test)]

@@ -11,9 +11,9 @@ use super::nodes::{self, Entry, Kind};
 use super::reshape::Resize;
 use super::shapes::{ShapeReader, Volume};
 use super::token::Span;
-use crate::read::diagnostic::{Diagnostic, Diagnostics, Source};
-use crate::read::{Files, ReadOptions};
-use csg::{Model, ModelBuilder, Node, NodeId};
+use crate::read::diagnostic::{Diagnostics, Source};
+use crate::read::{Files, ReadOptions, Reading};
+use csg::{ModelBuilder, Node, NodeId};
 
 /// Builds the model; the second part are warnings.
 ///
@@ -25,7 +25,7 @@ pub(super) fn evaluate(
     source: &Source<'_>,
     options: ReadOptions,
     files: &dyn Files,
-) -> Result<(Model, Vec<Diagnostic>), Diagnostics> {
+) -> Result<Reading, Diagnostics> {
     let mut evaluator = Evaluator {
         text,
         ast,
@@ -35,8 +35,10 @@ pub(super) fn evaluate(
         figures: Figures::default(),
         operands: Vec::new(),
         frames: Vec::new(),
+        approximated_nodes: 0,
     };
     let result = evaluator.run();
+    let approximated_nodes = evaluator.approximated_nodes;
     let mut builder = evaluator.builder;
     let mut complaints = evaluator.complaints;
     let root = match result {
@@ -55,7 +57,11 @@ pub(super) fn evaluate(
     let (errors, warnings) = complaints.finish();
     match Diagnostics::new(errors) {
         Some(errors) => Err(errors),
-        None => Ok((builder.finish(root), warnings)),
+        None => Ok(Reading {
+            model: builder.finish(root),
+            warnings,
+            approximated_nodes,
+        }),
     }
 }
 
@@ -92,6 +98,8 @@ pub(super) struct Evaluator<'a, 's> {
     pub(super) figures: Figures,
     pub(super) operands: Vec<Operand>,
     frames: Vec<Frame>,
+    /// For which something flat was taken.
+    pub(super) approximated_nodes: u64,
 }
 
 impl Evaluator<'_, '_> {
