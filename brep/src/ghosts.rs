@@ -6,7 +6,7 @@
 //! a strip there is solid.
 
 use crate::group::{FaceId, Groups};
-use crate::topology::{Brep, FacetKey, FacetView};
+use crate::topology::{Brep, FacetKey, FacetView, VertexView};
 use crate::validate::Valid;
 use csg::{PrimitiveId, Solid};
 use glam::DVec3;
@@ -78,7 +78,7 @@ fn ghosts(brep: &Brep, groups: &Groups, solid: &Solid, tolerance: f64) -> BTreeS
         areas[face as usize] += area(facet);
         for half_edge in facet.half_edges() {
             if groups.is_crease(half_edge) {
-                let [from, to] = [half_edge.origin(), half_edge.target()].map(|v| v.position());
+                let [from, to] = [half_edge.origin(), half_edge.target()].map(VertexView::position);
                 rims[face as usize] += from.distance(to);
             }
         }
@@ -155,7 +155,7 @@ fn heirs(
         let face = groups.face_of[half_edge.facet().key()];
         let other = groups.face_of[half_edge.twin().facet().key()];
         if face != other && ghosts.contains(&face) {
-            let [from, to] = [half_edge.origin(), half_edge.target()].map(|v| v.position());
+            let [from, to] = [half_edge.origin(), half_edge.target()].map(VertexView::position);
             let beside = borders.entry(face).or_default();
             *beside.entry(other).or_default() += from.distance(to);
         }
