@@ -1,6 +1,7 @@
 //! Files that a model names, such as imported meshes: only those below the model's own folder.
 
-use io::read::{FileRefusal, Files};
+use crate::fonts;
+use io::read::{FileRefusal, Files, FontFile};
 use std::path::{Component, Path, PathBuf};
 
 /// Larger files are not read.
@@ -74,5 +75,9 @@ impl Files for Folder {
             ));
         }
         std::fs::read(&real).map_err(missing)
+    }
+
+    fn font(&self, name: &str) -> Result<FontFile, FileRefusal> {
+        fonts::find(name)
     }
 }

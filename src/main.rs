@@ -9,6 +9,7 @@ mod convert;
 mod excerpt;
 mod failure;
 mod folder;
+mod fonts;
 mod info;
 mod input;
 mod loose;

@@ -210,14 +210,13 @@ fn subdivided(
     let fragments = subdivide(solid, job, rule, progress, report)?;
     stop_if_interrupted()?;
     progress.begin("stitching");
-    let narrow = match rule {
-        Rule::Tolerance(tolerance) | Rule::Topology { finest: tolerance } => tolerance,
-        Rule::Level(_) => 0.0,
-    };
-    let narrow = if report.proved_topology { 0.0 } else { narrow };
     let (brep, moved, ghosts) = report.timed("stitching", || {
         let (brep, moved) = stitch(&fragments)?;
-        let (brep, ghosts) = brep::dissolve_ghosts(brep, solid, narrow);
+        let (brep, ghosts) = match rule {
+            Rule::Tolerance(tolerance) => brep::dissolve_ghosts(brep, solid, tolerance),
+            // What takes its faces from coarse cells has its own rules for what is small.
+            Rule::Topology { .. } | Rule::Level(_) => (brep, 0),
+        };
         Ok::<_, Failure>((brep, moved, ghosts))
     })?;
     stop_if_interrupted()?;

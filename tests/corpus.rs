@@ -128,15 +128,17 @@ fn dumps_without_reference_convert() {
             count += 1;
         }
     }
-    assert_eq!(count, 7);
+    assert_eq!(count, 8);
 }
 
 /// What no solid can be made of is refused with its name, line and reason.
 #[test]
 fn refused_dumps_say_why() {
     for (file, expected) in [
-        ("allmodules.csg", "`text` is not supported"),
-        ("fill2-tests.csg", ":41:4: `text` is not supported"),
+        (
+            "fill2-tests.csg",
+            ":41:4: `text` needs a font: no fonts are read here",
+        ),
         (
             "hull2-tests.csg",
             "the model is 2-D only: `circle` has no volume",

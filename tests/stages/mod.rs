@@ -67,12 +67,10 @@ pub(crate) fn convert_solid(solid: Solid, settings: &Settings) -> Converted {
     };
     let stitched = brep::stitch(&fragments).expect("paired half-edges");
     let brep = stitched.validate().expect("a manifold");
-    let narrow = match settings.rule {
-        Rule::Tolerance(tolerance) | Rule::Topology { finest: tolerance } => tolerance,
-        Rule::Level(_) => 0.0,
+    let brep = match settings.rule {
+        Rule::Tolerance(tolerance) => brep::dissolve_ghosts(brep, &solid, tolerance).0,
+        Rule::Topology { .. } | Rule::Level(_) => brep,
     };
-    let is_proved = report.proved_topology == Some(true);
-    let (brep, _) = brep::dissolve_ghosts(brep, &solid, if is_proved { 0.0 } else { narrow });
     Converted {
         properties: Properties::of(&brep),
         shells: Shells::of(&brep),

@@ -17,7 +17,7 @@ pub mod mesh;
 pub mod scad_csg;
 
 pub use diagnostic::{Diagnostic, Diagnostics};
-pub use files::{FileRefusal, Files, NoFiles};
+pub use files::{FileRefusal, Files, FontFile, NoFiles};
 
 /// Reads a function of x, y and z such as `sin(x)*cos(y) - exp(-z)`.
 ///

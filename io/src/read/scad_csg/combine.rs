@@ -148,7 +148,10 @@ impl Evaluator<'_, '_> {
 
     /// Warns that a node has no closed form and became something flat within a distance.
     pub(super) fn approximate(&mut self, frame: &Frame, what: &str, error: f64) {
-        self.approximated_nodes += 1;
+        // A node of many parts is told once.
+        if !self.approximated.insert(frame.name.range().start) {
+            return;
+        }
         let name = frame.name.of(self.text);
         self.complaints.warn_once(
             &format!("approximate {name} {what}"),

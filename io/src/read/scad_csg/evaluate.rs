@@ -14,6 +14,7 @@ use super::token::Span;
 use crate::read::diagnostic::{Diagnostics, Source};
 use crate::read::{Files, ReadOptions, Reading};
 use csg::{ModelBuilder, Node, NodeId};
+use std::collections::BTreeSet;
 
 /// Builds the model; the second part are warnings.
 ///
@@ -35,10 +36,10 @@ pub(super) fn evaluate(
         figures: Figures::default(),
         operands: Vec::new(),
         frames: Vec::new(),
-        approximated_nodes: 0,
+        approximated: BTreeSet::new(),
     };
     let result = evaluator.run();
-    let approximated_nodes = evaluator.approximated_nodes;
+    let approximated_nodes = evaluator.approximated.len() as u64;
     let mut builder = evaluator.builder;
     let mut complaints = evaluator.complaints;
     let root = match result {
@@ -98,8 +99,8 @@ pub(super) struct Evaluator<'a, 's> {
     pub(super) figures: Figures,
     pub(super) operands: Vec<Operand>,
     frames: Vec<Frame>,
-    /// For which something flat was taken.
-    pub(super) approximated_nodes: u64,
+    /// Where nodes stand for which something flat was taken.
+    pub(super) approximated: BTreeSet<usize>,
 }
 
 impl Evaluator<'_, '_> {
@@ -243,6 +244,16 @@ impl Evaluator<'_, '_> {
                         Operand::Flat(id, call.name)
                     }
                     None => Operand::Nothing,
+                })
+            }
+            Kind::Text => {
+                let regions = figure::text(&arguments, self.shapes.files(), complaints)?;
+                let letters = regions.into_iter().map(Figure::Region);
+                let letters: Vec<FigureId> = letters.map(|l| self.figures.add(l)).collect();
+                Step::Done(if letters.is_empty() {
+                    Operand::Nothing
+                } else {
+                    Operand::Flat(self.figures.union(letters), call.name)
                 })
             }
             Kind::Leaf(leaf) => {

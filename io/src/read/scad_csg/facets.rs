@@ -1,6 +1,7 @@
 //! The boundary of a part of the model as triangles, for the nodes that ask for measures of it:
 //! hulls, shadows and sections of what was cut, sizes of what is to be resized.
 
+use brep::{Brep, Fit, IfTroubled, Valid};
 use csg::{ModelBuilder, NodeId, PrimitiveId, Solid};
 use glam::DVec3;
 use subdiv::{Rule, Settings};
@@ -10,6 +11,16 @@ const SAGITTA: f64 = 5e-4;
 
 /// Cells of the subdivision, at most.
 const MAX_CELLS: u64 = 3_000_000;
+
+fn boundary(solid: &Solid, rule: Rule) -> Option<Valid<Brep>> {
+    if solid.primitives.is_empty() {
+        return None;
+    }
+    let mut settings = Settings::new(rule);
+    settings.max_cells = MAX_CELLS;
+    let outcome = subdiv::convert(solid, &settings, &()).ok()?;
+    brep::stitch(&outcome.fragments).ok()?.validate().ok()
+}
 
 /// A closed, oriented surface.
 #[derive(Clone, Debug, Default)]
@@ -31,10 +42,24 @@ impl Facets {
             return Some(Self::default());
         }
         let sagitta = SAGITTA * coarseness * solid.extent.diagonal();
-        let mut settings = Settings::new(Rule::Tolerance(sagitta));
-        settings.max_cells = MAX_CELLS;
-        let outcome = subdiv::convert(&solid, &settings, &()).ok()?;
-        let brep = brep::stitch(&outcome.fragments).ok()?.validate().ok()?;
+        let brep = boundary(&solid, Rule::Tolerance(sagitta))?;
+        Some(Self::of_boundary(brep, &solid, sagitta))
+    }
+
+    /// The boundary as above, with as few facets as its surfaces allow.
+    pub(super) fn few(builder: &ModelBuilder, root: NodeId, coarseness: f64) -> Option<Self> {
+        let solid = Solid::build(&builder.subtree(root), None).ok()?;
+        let finest = SAGITTA * coarseness * solid.extent.diagonal();
+        let few = boundary(&solid, Rule::Topology { finest }).and_then(|brep| {
+            brep::tessellate(&brep, &solid, finest, Fit::default(), IfTroubled::Refine)
+        });
+        match few {
+            Some((brep, _)) => Some(Self::of_boundary(brep, &solid, finest)),
+            None => Self::of(builder, root, coarseness),
+        }
+    }
+
+    fn of_boundary(brep: Valid<Brep>, solid: &Solid, sagitta: f64) -> Self {
         let is_plane = |PrimitiveId(at): PrimitiveId| {
             let primitive = solid.primitives.get(at as usize);
             primitive.is_some_and(|p| p.polynomial.degree() == 1)
@@ -52,7 +77,7 @@ impl Facets {
                 |v: brep::VertexView<'_>| numbers.get(v.key()).map_or(usize::MAX, |n| *n as usize);
             facets.triangles.push(facet.vertices().map(corner));
         }
-        Some(facets)
+        facets
     }
 
     /// The corners of each triangle.

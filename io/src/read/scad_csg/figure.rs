@@ -14,6 +14,7 @@ mod read;
 mod revolve;
 mod solid;
 mod taper;
+mod text;
 mod twist;
 
 pub(super) use chain::{doubled_area, hull as convex_ring, turn};
@@ -22,6 +23,7 @@ pub(super) use offset::Offset;
 pub(super) use partition::widest_gap;
 pub(super) use read::{Extrusion, FigureLeaf, extrusion, leaf, offset};
 pub(super) use solid::{Refusal, extrude};
+pub(super) use text::text;
 
 use glam::{DAffine2, DMat3, DVec2, DVec3};
 use std::convert::Infallible;

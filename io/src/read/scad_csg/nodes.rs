@@ -19,6 +19,8 @@ pub(super) enum Kind {
     Leaf(Leaf),
     /// A plane figure without children: part of no solid unless something extrudes it.
     Figure(FigureLeaf),
+    /// Letters, a plane figure without children.
+    Text,
     /// The solid that its children, plane figures, make when they move along z.
     LinearExtrude,
     /// The solid that its children, plane figures, make when they turn about z.
@@ -117,8 +119,6 @@ const fn refused(name: &'static str, remedy: &'static str) -> Entry {
     entry(name, Kind::Refused(remedy), &[])
 }
 
-const FONT: &str = "let OpenSCAD make a mesh of the extruded text, as in openscad -o text.off text.scad, \
-                    and write import(\"text.off\") in its place";
 const MESH: &str = "let OpenSCAD make a mesh of this part, as in openscad -o part.off part.scad, \
                     and write import(\"part.off\") in its place";
 
@@ -168,7 +168,21 @@ const ENTRIES: [Entry; 42] = [
         Leaf::Polyhedron,
         &["points", "faces", "triangles"],
     ),
-    refused("text", FONT),
+    entry(
+        "text",
+        Kind::Text,
+        &[
+            "text",
+            "size",
+            "font",
+            "halign",
+            "valign",
+            "spacing",
+            "direction",
+            "language",
+            "script",
+        ],
+    ),
     entry("offset", Kind::Offset, &["r", "delta", "chamfer"]),
     entry("projection", Kind::Projection, &["cut"]),
     entry("fill", Kind::Fill, &[]),

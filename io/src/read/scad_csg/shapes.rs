@@ -50,6 +50,11 @@ impl<'f> ShapeReader<'f> {
         }
     }
 
+    /// Where files and fonts come from.
+    pub(super) fn files(&self) -> &'f dyn Files {
+        self.files
+    }
+
     pub(super) fn read(
         &mut self,
         leaf: Leaf,

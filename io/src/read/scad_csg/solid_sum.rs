@@ -80,7 +80,7 @@ impl Evaluator<'_, '_> {
                 Body::Can(ends) if convex.can.is_none() => convex.can = Some(*ends),
                 Body::Cut(id, at) => {
                     let moved = self.builder.add(Node::Instance(at.clone(), *id));
-                    let facets = Facets::of(&self.builder, moved, 4.0)?;
+                    let facets = Facets::few(&self.builder, moved, 4.0)?;
                     if !facets.exact {
                         convex.error += facets.sagitta;
                     }

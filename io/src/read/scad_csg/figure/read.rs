@@ -19,7 +19,7 @@ pub(in super::super) enum FigureLeaf {
 }
 
 /// Larger figures overflow further on.
-const MAX_SIZE: f64 = 1e50;
+pub(super) const MAX_SIZE: f64 = 1e50;
 
 /// Vertices of one polygon, at most; its pockets may take quadratic time.
 const MAX_VERTICES: usize = 50_000;

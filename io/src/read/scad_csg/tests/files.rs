@@ -1,7 +1,7 @@
 //! `import` and `surface`, with files in memory.
 
 use super::{contains, lines};
-use crate::read::{Diagnostics, FileRefusal, Files, ReadOptions, Reading, scad_csg};
+use crate::read::{Diagnostics, FileRefusal, Files, FontFile, ReadOptions, Reading, scad_csg};
 use glam::DVec3;
 
 /// Files by name.
@@ -13,6 +13,16 @@ impl Files for Memory {
         found.map(|(_, bytes)| bytes.clone()).ok_or(FileRefusal {
             message: "it does not exist".to_owned(),
             remedy: "put it there".to_owned(),
+        })
+    }
+
+    fn font(&self, name: &str) -> Result<FontFile, FileRefusal> {
+        Ok(FontFile {
+            bytes: include_bytes!("../../../../../fixtures/third_party/dejavu/letters.ttf")
+                .to_vec(),
+            index: 0,
+            name: "Letters".to_owned(),
+            is_substitute: !name.is_empty(),
         })
     }
 }

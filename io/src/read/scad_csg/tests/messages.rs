@@ -26,7 +26,7 @@ fn unknown_and_unsupported_nodes_are_named() {
         ),
         (
             "text(\"a\");",
-            "t.csg:1:1: `text` is not supported (let OpenSCAD make a mesh of the extruded text, as in openscad -o text.off text.scad, and write import(\"text.off\") in its place)",
+            "t.csg:1:1: `text` needs a font: no fonts are read here (convert the model with the program csg2brep)",
         ),
         (
             "circle(r = 1);",

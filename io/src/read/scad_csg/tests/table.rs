@@ -70,6 +70,7 @@ fn plain(node: &str) -> Vec<String> {
         "rotate_extrude" => vec![format!(
             "rotate_extrude(angle = 90) translate([3, 0]) {half_disc}"
         )],
+        "text" => vec![figure("text(\"AVTo\");")],
         "fill" => vec![figure("fill() square(2);")],
         "resize" => vec![format!("resize([4, 0, 0], auto = true) {solids}")],
         "torus" => vec!["torus(r1 = 3, r2 = 1);".into()],
