@@ -173,6 +173,36 @@ pub(crate) fn facets(
     Ok(brep)
 }
 
+/// The boundary once more, with cells no larger than `finest` where nothing is proved, and what
+/// was measured on it; `None` if that takes more than `max_cells`.
+pub(crate) fn finer(
+    solid: &Solid,
+    job: &Job,
+    finest: f64,
+    max_cells: u64,
+    progress: &Progress,
+) -> Result<Option<(Boundary, Report)>, Failure> {
+    let job = Job {
+        max_cells: job.max_cells.min(max_cells),
+        ..job.clone()
+    };
+    let mut report = crate::convert::new_report(&job);
+    let rule = Rule::Topology { finest };
+    let brep = match subdivided(solid, &job, rule, progress, &mut report) {
+        Ok(brep) => brep,
+        Err(Failure::Limit(_)) => return Ok(None),
+        Err(failure) => return Err(failure),
+    };
+    let boundary = Boundary {
+        brep,
+        topology: None,
+        solid: solid.clone(),
+        is_mesh: false,
+    };
+    let boundary = measured(boundary, progress, &mut report);
+    Ok(Some((boundary, report)))
+}
+
 /// Facets from the true surfaces, where that is possible.
 fn tessellated(
     topology: &Valid<Brep>,

@@ -233,6 +233,8 @@ pub(crate) struct StepReport {
     pub(crate) faceted: Vec<FacetedSolid>,
     /// Faces on true surfaces.
     pub(crate) faces: u64,
+    /// Surfaces that STEP has no entity of their own for, said exactly by more general ones.
+    pub(crate) substitutes: Vec<SubstituteReport>,
     /// Edges that are splines, for want of a closed form.
     pub(crate) spline_edges: u64,
     /// Largest distance of such a spline from its surfaces.
@@ -246,6 +248,17 @@ pub(crate) struct StepReport {
     /// Whether no mesh was written beside it.
     #[serde(skip)]
     pub(crate) is_alone: bool,
+}
+
+/// A surface that STEP has no entity of its own for.
+#[derive(Clone, Debug, Serialize, JsonSchema)]
+pub(crate) struct SubstituteReport {
+    /// The surface's number, as `info` lists them.
+    pub(crate) surface: u32,
+    /// What says it in the file.
+    pub(crate) entity: &'static str,
+    /// Faces on it.
+    pub(crate) faces: u64,
 }
 
 /// A solid that was written as plane facets.
@@ -263,11 +276,17 @@ impl StepReport {
             name: solid.name,
             reason: solid.reason,
         });
+        let substitutes = of.substitutes.into_iter().map(|of| SubstituteReport {
+            surface: of.surface.0,
+            entity: of.entity,
+            faces: of.faces as u64,
+        });
         Self {
             solids: of.solids as u64,
             specks: of.specks as u64,
             faceted: faceted.collect(),
             faces: of.faces as u64,
+            substitutes: substitutes.collect(),
             spline_edges: of.spline_edges as u64,
             accuracy,
             crumb_edges: of.crumbs.edges as u64,
@@ -385,6 +404,23 @@ impl Report {
         let stages = names.into_iter().zip(of.seconds);
         self.stages
             .extend(stages.map(|(name, seconds)| Stage { name, seconds }));
+    }
+
+    /// What is known of a finer boundary that takes the place of this one.
+    pub(crate) fn replace_boundary(&mut self, finer: Self) {
+        self.counts = finer.counts;
+        self.proved_topology = finer.proved_topology;
+        self.split_vertices = finer.split_vertices;
+        self.specks = finer.specks;
+        self.crumbs = finer.crumbs;
+        self.crossing_cells = finer.crossing_cells;
+        self.uncertified_count = finer.uncertified_count;
+        self.uncertified = finer.uncertified;
+        self.genus = finer.genus;
+        self.area = finer.area;
+        self.volume = finer.volume;
+        self.centroid = finer.centroid;
+        self.quality = finer.quality;
     }
 
     /// What became of planar faces.

@@ -8,8 +8,16 @@ use crate::progress::Progress;
 use crate::report::{Report, StepReport};
 use crate::run::{Conversion, Job, Target};
 use crate::summary::counted;
+use brep::{Brep, Valid};
 use io::write::step::{Options, Outcome, Plan};
 use subdiv::Rule;
+
+/// How often a finer subdivision is tried where faces or edges were not told apart.
+const ATTEMPTS: usize = 2;
+/// How much finer, each time.
+const FINER: f64 = 0.125;
+/// Most cells of these: beyond them, facets are what a user would rather wait for.
+const MAX_CELLS: u64 = 1_000_000;
 
 /// Writes a STEP file. The report learns what became of the solids; returned is what the user
 /// should know.
@@ -25,9 +33,40 @@ pub(crate) fn write(
     let topology = boundary.topology.as_ref().unwrap_or(brep);
     let options = options(conversion, solid.extent.diagonal());
     let (accuracy, crumb_size) = (options.tolerance, options.crumb_size);
-    progress.begin("true surfaces");
-    let plan = report.timed("true surfaces", || Plan::of(solid, topology, options));
-    let plan = plan.map_err(|error| Failure::from_writer(&target.name(), error))?;
+    let plan_of = |topology: &Valid<Brep>, crumb_size, report: &mut Report| {
+        progress.begin("true surfaces");
+        let options = Options {
+            crumb_size,
+            ..options.clone()
+        };
+        let plan = report.timed("true surfaces", || Plan::of(solid, topology, options));
+        plan.map_err(|error| Failure::from_writer(&target.name(), error))
+    };
+    let mut plan = plan_of(topology, crumb_size, report)?;
+    let is_free = !matches!(job.rule(solid.extent.diagonal()), Rule::Level(_));
+    let mut finest = crumb_size;
+    let mut replacement = None;
+    for _ in 0..ATTEMPTS {
+        if plan.unresolved() == 0 || !is_free {
+            break;
+        }
+        finest *= FINER;
+        let Some((finer, mut aside)) = pipeline::finer(solid, job, finest, MAX_CELLS, progress)?
+        else {
+            break;
+        };
+        let candidate = plan_of(&finer.brep, finest, &mut aside)?;
+        report.stages.append(&mut aside.stages);
+        if candidate.unresolved() < plan.unresolved() {
+            plan = candidate;
+            replacement = Some(aside);
+        }
+    }
+    if let Some(aside) = replacement
+        && job.is_step_only
+    {
+        report.replace_boundary(aside);
+    }
     let mut facets = None;
     if plan.needs_facets() && job.is_step_only {
         let mut aside = crate::convert::new_report(job);
@@ -40,7 +79,7 @@ pub(crate) fn write(
     let mut outcome = Outcome::default();
     report.timed("writing", || {
         to_target(target, |mut out| {
-            outcome = plan.write(Some(facets.as_ref().unwrap_or(brep)), &mut out)?;
+            outcome = plan.write(facets.as_ref().unwrap_or(brep), &mut out)?;
             Ok(())
         })
     })?;

@@ -5,6 +5,7 @@
 mod fixtures;
 mod opencascade;
 mod program;
+mod quadrics;
 mod solids;
 #[path = "../stages/mod.rs"]
 mod stages;

@@ -6,17 +6,23 @@
 //!
 //! The crate step-io puts the entities into a file. Source: ISO 10303-242, ISO 10303-42.
 
+mod closed;
+mod cut;
 mod describe;
 mod exact;
 mod faceted;
+mod meridian;
 mod quadric;
+mod rational;
+mod region;
+mod revolution;
 mod seam;
 mod surface;
 
 use super::{Error, GENERATOR, appearance};
 use brep::{Brep, Crumbs, Curves, ExactBrep, Groups, ShellId, Shells, Valid};
-use csg::{Aabb, Material, MaterialId, Solid};
-use describe::Described;
+use csg::{Aabb, Material, MaterialId, PrimitiveId, Solid};
+use describe::{Described, NoForm};
 use std::io::Write;
 use step_io::build::{CurveInput, Part, StyleTarget, UnitsInput, VoidShellNormals};
 use step_io::model::AdvancedFaceId;
@@ -52,12 +58,25 @@ pub struct Outcome {
     pub specks: usize,
     /// Faces on true surfaces.
     pub faces: usize,
+    /// Surfaces that STEP has no entity of their own for, and what says them instead.
+    pub substitutes: Vec<Substitute>,
     /// Edges written as splines.
     pub spline_edges: usize,
     /// Solids written as plane facets.
     pub faceted: Vec<Faceted>,
     /// What was merged away.
     pub crumbs: Crumbs,
+}
+
+/// A surface that STEP has no entity of its own for, said exactly by a more general one.
+#[derive(Clone, PartialEq, Eq, Debug)]
+pub struct Substitute {
+    /// The primitive.
+    pub surface: PrimitiveId,
+    /// What it is in the file.
+    pub entity: &'static str,
+    /// How many faces are on it.
+    pub faces: usize,
 }
 
 /// A solid that has no true form in STEP.
@@ -72,7 +91,6 @@ pub struct Faceted {
 /// A file before it is written: which solids have a true form in STEP.
 pub struct Plan<'a> {
     solid: &'a Solid,
-    topology: &'a Valid<Brep>,
     options: Options,
     exact: ExactBrep,
     solids: Vec<Planned>,
@@ -82,7 +100,7 @@ pub struct Plan<'a> {
 /// A solid that is to be written.
 struct Planned {
     bounds: Aabb,
-    described: Result<Described, String>,
+    described: Result<Described, NoForm>,
 }
 
 impl<'a> Plan<'a> {
@@ -91,11 +109,7 @@ impl<'a> Plan<'a> {
     ///
     /// # Errors
     /// [`Error::StrayVoid`] if a cavity lies in no solid.
-    pub fn of(
-        solid: &'a Solid,
-        topology: &'a Valid<Brep>,
-        options: Options,
-    ) -> Result<Self, Error> {
+    pub fn of(solid: &'a Solid, topology: &Valid<Brep>, options: Options) -> Result<Self, Error> {
         let groups = Groups::of(topology);
         let shells = Shells::of(topology);
         if !shells.stray_voids.is_empty() {
@@ -107,7 +121,6 @@ impl<'a> Plan<'a> {
         let exact = ExactBrep::of(topology, &groups, &shells, &curves, solid, crumb_size);
         let mut plan = Self {
             solid,
-            topology,
             options,
             exact,
             solids: Vec::new(),
@@ -122,7 +135,7 @@ impl<'a> Plan<'a> {
             let voids = component.voids.iter().map(|&ShellId(at)| at as usize);
             let voids = voids.filter(|&at| !plan.exact.shells[at].faces.is_empty());
             let numbers: Vec<usize> = std::iter::once(outer as usize).chain(voids).collect();
-            let described = plan.describe(&numbers);
+            let described = plan.describe(topology, &numbers);
             let bounds = shells.shells[outer as usize].bounds;
             plan.solids.push(Planned { bounds, described });
         }
@@ -133,6 +146,15 @@ impl<'a> Plan<'a> {
     #[must_use]
     pub fn needs_facets(&self) -> bool {
         self.solids.iter().any(|solid| solid.described.is_err())
+    }
+
+    /// Solids that have no true form since the boundary's faces or edges were not told apart: a
+    /// finer subdivision may do that.
+    #[must_use]
+    pub fn unresolved(&self) -> usize {
+        let all = self.solids.iter();
+        all.filter(|solid| matches!(&solid.described, Err(none) if none.is_unresolved))
+            .count()
     }
 
     /// What the file claims: nothing but splines is less exact than numbers are.
@@ -155,15 +177,11 @@ impl<'a> Plan<'a> {
     }
 
     /// Writes the file. `facets` is a mesh of the same solid, good enough for solids that have no
-    /// true form; without it they become facets of the mesh that the plan was made from.
+    /// true form.
     ///
     /// # Errors
     /// [`Error::Io`]; [`Error::Step`] if the file cannot be put together.
-    pub fn write(
-        self,
-        facets: Option<&Valid<Brep>>,
-        out: &mut impl Write,
-    ) -> Result<Outcome, Error> {
+    pub fn write(self, facets: &Valid<Brep>, out: &mut impl Write) -> Result<Outcome, Error> {
         let options = &self.options;
         let accuracy = self.accuracy();
         let mut builder = StepBuilder::new_with(&UnitsInput {
@@ -190,7 +208,7 @@ impl<'a> Plan<'a> {
                 ..Outcome::default()
             },
         };
-        file.add_solids(&self.solids, facets.unwrap_or(self.topology))?;
+        file.add_solids(&self.solids, facets)?;
         let outcome = file.outcome;
         step_io::write(&file.builder.finish(), out)?;
         Ok(outcome)
@@ -238,10 +256,10 @@ impl File<'_> {
             let name = format!("solid {}", at + 1);
             let faces = match &solid.described {
                 Ok(described) => self.exact_faces(described)?,
-                Err(reason) => {
+                Err(none) => {
                     self.outcome.faceted.push(Faceted {
                         name: name.clone(),
-                        reason: reason.clone(),
+                        reason: none.reason.clone(),
                     });
                     self.faceted(facets, &facet_lists)?
                 }
@@ -260,7 +278,7 @@ impl File<'_> {
         let reason = solids
             .iter()
             .find_map(|solid| solid.described.as_ref().err());
-        let reason = reason.map_or("", String::as_str);
+        let reason = reason.map_or("", |none| none.reason.as_str());
         let lists = faceted::of_solids(facets, &Shells::of(facets));
         for (at, lists) in lists.iter().enumerate() {
             let name = format!("solid {}", at + 1);

@@ -1,10 +1,10 @@
 //! What a solid's faces and edges are in STEP's terms.
 
 use super::{Plan, surface};
-use brep::{Curve, ExactFace};
+use brep::{Brep, Curve, ExactFace, Valid};
 use glam::DVec3;
-use std::collections::BTreeMap;
 use std::collections::btree_map::Entry;
+use std::collections::{BTreeMap, BTreeSet};
 use step_io::build::{CurveInput, Frame};
 use step_io::scene::NurbsCurve;
 
@@ -13,6 +13,35 @@ use step_io::scene::NurbsCurve;
 pub(super) struct Described {
     pub(super) shells: Vec<Vec<(surface::Described, ExactFace)>>,
     pub(super) curves: BTreeMap<usize, CurveInput>,
+    /// Edges that are written as arcs.
+    pub(super) split: BTreeSet<usize>,
+    /// Parameters at which edges are cut in two, since a closed surface is cut open there.
+    pub(super) stops: BTreeMap<usize, Vec<f64>>,
+}
+
+/// Why a solid has no true form.
+pub(super) struct NoForm {
+    pub(super) reason: String,
+    /// Whether a finer subdivision may have one: not for want of an entity in STEP, but since
+    /// faces or edges were not told apart.
+    pub(super) is_unresolved: bool,
+}
+
+impl NoForm {
+    /// STEP has no entity for a surface.
+    pub(super) fn of_surface(reason: String) -> Self {
+        Self {
+            reason,
+            is_unresolved: false,
+        }
+    }
+
+    fn unresolved(reason: String) -> Self {
+        Self {
+            reason,
+            is_unresolved: true,
+        }
+    }
 }
 
 /// Distance between curves, relative to the solid, that other programs take for none.
@@ -20,48 +49,66 @@ const TOUCHING: f64 = 1e-6;
 
 impl Plan<'_> {
     /// Geometry of all faces and edges of a solid, or why it has no true form.
-    pub(super) fn describe(&self, shells: &[usize]) -> Result<Described, String> {
+    pub(super) fn describe(
+        &self,
+        topology: &Valid<Brep>,
+        shells: &[usize],
+    ) -> Result<Described, NoForm> {
         let broken = self.exact.broken_shells();
         if shells.iter().any(|shell| broken.contains(shell)) {
-            return Err("its faces touch themselves".to_owned());
+            let reason = "its faces touch themselves".to_owned();
+            return Err(NoForm::unresolved(reason));
         }
         let mut described = Described::default();
         for &shell in shells {
             let mut faces = Vec::new();
             for &face in &self.exact.shells[shell].faces {
                 let face = &self.exact.faces[face];
-                let surface = surface::describe(self.topology, self.solid, &self.exact, face)?;
+                let surface = surface::describe(topology, self.solid, &self.exact, face)
+                    .map_err(NoForm::of_surface)?;
                 if face.loops.is_empty() && !surface.is_closed() {
                     let id = face.primitive.0;
-                    return Err(format!("a face of surface {id} has lost its edges"));
+                    return Err(NoForm::unresolved(format!(
+                        "a face of surface {id} has lost its edges"
+                    )));
                 }
                 if face.is_pinched {
                     let id = face.primitive.0;
-                    return Err(format!("a face of surface {id} touches itself in a point"));
+                    return Err(NoForm::unresolved(format!(
+                        "a face of surface {id} touches itself in a point"
+                    )));
                 }
                 if self
                     .exact
                     .is_folded(face, TOUCHING * self.solid.extent.diagonal())
                 {
                     let id = face.primitive.0;
-                    return Err(format!(
+                    return Err(NoForm::unresolved(format!(
                         "a face of surface {id} touches itself along an edge"
-                    ));
+                    )));
                 }
-                faces.push((surface, face.clone()));
                 for &half_edge in face.loops.iter().flatten() {
                     let edge = half_edge / 2;
+                    if surface.bends(&self.exact.edges[edge].piece.curve) {
+                        described.split.insert(edge);
+                    }
                     if let Entry::Vacant(entry) = described.curves.entry(edge) {
                         entry.insert(self.curve(edge)?);
                     }
                 }
+                for start in surface.cut.iter().flat_map(|cut| &cut.starts) {
+                    let half_edge = face.loops[start.ring][start.place];
+                    let stops = described.stops.entry(half_edge / 2).or_default();
+                    stops.extend(start.parameter);
+                }
+                faces.push((surface, face.clone()));
             }
             described.shells.push(faces);
         }
         Ok(described)
     }
 
-    fn curve(&self, edge: usize) -> Result<CurveInput, String> {
+    fn curve(&self, edge: usize) -> Result<CurveInput, NoForm> {
         let edge = &self.exact.edges[edge];
         let scale = self.options.millimetres_per_unit;
         let frame = |center: DVec3, across: [DVec3; 2]| Frame {
@@ -86,7 +133,9 @@ impl Plan<'_> {
                     let ids: Vec<String> =
                         edge.primitives.iter().map(|id| id.0.to_string()).collect();
                     let ids = ids.join(" and ");
-                    format!("an edge of surfaces {ids} was not traced to the tolerance")
+                    NoForm::unresolved(format!(
+                        "an edge of surfaces {ids} was not traced to the tolerance"
+                    ))
                 })?;
                 CurveInput::Nurbs(NurbsCurve {
                     degree: 3,

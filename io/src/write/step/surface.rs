@@ -1,11 +1,14 @@
 //! Surfaces that STEP can say.
 
-use super::quadric::{self, Quadric};
+use super::cut::Cut;
+use super::quadric::{self, Found, Quadric};
+use super::region::Region;
+use super::revolution;
 use super::seam;
 use brep::{Brep, Curve, ExactBrep, ExactFace, FacetView, Valid};
 use csg::{Sense, Solid, Surface};
 use glam::DVec3;
-use step_io::build::{CurveInput, FaceBoundInput, Frame, SurfaceInput};
+use step_io::build::{FaceBoundInput, Frame, SurfaceInput};
 use step_io::model as m;
 use step_io::{AuthorError, Orientation, StepBuilder};
 
@@ -20,10 +23,12 @@ pub(super) struct Described {
     across: DVec3,
     /// Whether the face's normal is the surface's.
     pub(super) orientation: Orientation,
+    /// Where its only loop is joined to a pole.
+    pub(super) cut: Option<Cut>,
 }
 
 /// Radii in model units, angles in radians.
-#[derive(Clone, Copy)]
+#[derive(Clone)]
 enum Form {
     Plane,
     Cylinder { radius: f64 },
@@ -90,37 +95,33 @@ pub(super) fn describe(
             let outward = inside - center - on_ring.normalize_or_zero() * ring;
             (Form::Torus { ring, tube }, center, axis, outward, inside)
         }
-        Surface::Torus { .. } => {
-            return Err(format!("surface {id} is a torus that crosses itself"));
-        }
-        Surface::Quadric(form)
-            if let Some((quadric, outward)) =
-                quadric::of(&form, exact, face, farthest(facet, form.center)) =>
-        {
-            let at = farthest(facet, form.center);
-            (
-                Form::Quadric(quadric),
-                form.center,
-                form.axes[2],
-                outward,
-                at,
-            )
-        }
         _ => {
+            let found = match surface {
+                Surface::Torus {
+                    center,
+                    axis,
+                    ring,
+                    tube,
+                } => {
+                    let across = seam::direction(exact, face, center, axis);
+                    revolution::spindle([center, axis, across], [ring, tube], inside)
+                }
+                Surface::Quadric(form) => {
+                    let at = farthest(facet, form.center);
+                    let region = Region::of(brep, exact, face);
+                    quadric::of(&form, exact, face, &region, at)
+                }
+                _ => None,
+            };
             let degree = primitive.polynomial.degree();
-            return Err(format!(
-                "surface {id}, of degree {degree}, has no form in STEP"
-            ));
+            let found = found
+                .ok_or_else(|| format!("surface {id}, of degree {degree}, has no form in STEP"))?;
+            let gradient = |at| primitive.polynomial.gradient(solid.domain.to_centered(at));
+            return Ok(Described::of_quadric(found, face, gradient));
         }
     };
     let gradient = primitive.polynomial.gradient(solid.domain.to_centered(at));
-    let along = outward.dot(gradient) > 0.0;
-    let is_forward = along == (face.sense == Sense::Inside);
-    let orientation = if is_forward {
-        Orientation::Forward
-    } else {
-        Orientation::Reversed
-    };
+    let orientation = orientation(face, outward, gradient);
     let across = seam::direction(exact, face, origin, axis);
     Ok(Described {
         form,
@@ -128,7 +129,18 @@ pub(super) fn describe(
         axis,
         across,
         orientation,
+        cut: None,
     })
+}
+
+/// Whether STEP's normal looks out of the solid: the polynomial grows out of it if that is inside.
+fn orientation(face: &ExactFace, outward: DVec3, gradient: DVec3) -> Orientation {
+    let along = outward.dot(gradient) > 0.0;
+    if along == (face.sense == Sense::Inside) {
+        Orientation::Forward
+    } else {
+        Orientation::Reversed
+    }
 }
 
 /// The axis of a sphere whose edges on this face are circles of latitude, if they are: other
@@ -161,6 +173,17 @@ fn farthest(facet: FacetView<'_>, from: DVec3) -> DVec3 {
 }
 
 impl Described {
+    fn of_quadric(found: Found, face: &ExactFace, gradient: impl Fn(DVec3) -> DVec3) -> Self {
+        Self {
+            orientation: orientation(face, found.outward, gradient(found.at)),
+            form: Form::Quadric(found.quadric),
+            origin: found.origin,
+            axis: found.axis,
+            across: found.across,
+            cut: found.cut,
+        }
+    }
+
     pub(super) fn is_plane(&self) -> bool {
         matches!(self.form, Form::Plane)
     }
@@ -169,52 +192,82 @@ impl Described {
     pub(super) fn is_closed(&self) -> bool {
         matches!(
             self.form,
-            Form::Sphere { .. } | Form::Torus { .. } | Form::Quadric(Quadric::Ellipsoid(_))
+            Form::Sphere { .. }
+                | Form::Torus { .. }
+                | Form::Quadric(Quadric::Ellipsoid(_) | Quadric::Revolution(_))
         )
     }
 
+    /// Whether readers find a conic's image on the surface's parameters only by interpolating it: a
+    /// circle about the axis is a line there.
+    pub(super) fn bends(&self, curve: &Curve) -> bool {
+        let (Curve::Circle { across, .. } | Curve::Ellipse { across, .. }) = curve else {
+            return false;
+        };
+        match &self.form {
+            Form::Sphere { .. } | Form::Quadric(Quadric::Revolution(_)) => {
+                let normal = across[0].cross(across[1]).normalize_or_zero();
+                self.axis.cross(normal).length() > 1e-9
+            }
+            Form::Quadric(Quadric::Ellipsoid(_) | Quadric::Patch(_) | Quadric::Closed(_)) => true,
+            _ => false,
+        }
+    }
+
+    /// What the surface is in the file, if not an elementary surface.
+    pub(super) fn entity(&self) -> Option<&'static str> {
+        match &self.form {
+            Form::Quadric(quadric) => Some(quadric.entity()),
+            _ => None,
+        }
+    }
+
     /// The surface for a face with loops, in millimetres.
-    pub(super) fn input(&self, scale: f64) -> SurfaceInput {
+    pub(super) fn input(&self, scale: f64) -> Result<SurfaceInput, AuthorError> {
         let frame = Frame {
             origin: (self.origin * scale + DVec3::ZERO).to_array(),
             axis: (self.axis + DVec3::ZERO).to_array(),
             ref_dir: (self.across + DVec3::ZERO).to_array(),
         };
-        match self.form {
-            Form::Quadric(quadric) => quadric.input(self.origin, scale),
+        Ok(match &self.form {
+            Form::Quadric(quadric) => {
+                let input = quadric.input(self.origin, self.axis, scale);
+                input.ok_or(AuthorError::InvalidInput {
+                    reason: "a spline reaches to infinity",
+                })?
+            }
             Form::Plane => SurfaceInput::Plane(frame),
             Form::Cylinder { radius } => SurfaceInput::Cylinder(frame, radius * scale),
             Form::Cone {
                 radius,
                 half_angle_rad,
-            } => SurfaceInput::Cone(frame, radius * scale, half_angle_rad),
+            } => SurfaceInput::Cone(frame, radius * scale, *half_angle_rad),
             Form::Sphere { radius } => SurfaceInput::Sphere(frame, radius * scale),
             Form::Torus { ring, tube } => SurfaceInput::Torus(frame, ring * scale, tube * scale),
-        }
+        })
     }
 
-    /// All of an ellipsoid: its loop runs from pole to pole and back.
-    fn whole_ellipsoid(
+    /// All of a surface with two poles: its loop runs from one to the other and back.
+    fn between_poles(
         &self,
-        [x, _, pole]: [DVec3; 3],
+        quadric: &Quadric,
         builder: &mut StepBuilder,
         scale: f64,
     ) -> Result<m::AdvancedFaceId, AuthorError> {
-        let end = |side: f64| ((self.origin + pole * side) * scale).to_array();
-        let [from, to] = [builder.vertex(end(-1.0))?, builder.vertex(end(1.0))?];
-        let frame = Frame {
-            origin: (self.origin * scale).to_array(),
-            axis: x.cross(pole).normalize().to_array(),
-            ref_dir: x.normalize().to_array(),
-        };
-        let (a, c) = (x.length() * scale, pole.length() * scale);
-        let meridian = builder.edge(from, to, CurveInput::Ellipse(frame, a, c))?;
+        let (curve, ends) =
+            quadric
+                .closing(self.origin, scale)
+                .ok_or(AuthorError::InvalidInput {
+                    reason: "a closed face on a surface that is not closed",
+                })?;
+        let [from, to] = [builder.vertex(ends[0])?, builder.vertex(ends[1])?];
+        let meridian = builder.edge(from, to, curve)?;
         let ring = vec![
             (meridian, Orientation::Forward),
             (meridian, Orientation::Reversed),
         ];
         let bounds = vec![FaceBoundInput::outer(ring)];
-        builder.face(self.input(scale), self.orientation, bounds)
+        builder.face(self.input(scale)?, self.orientation, bounds)
     }
 
     /// A face without edges: all of a sphere or torus, whose loop is a single vertex.
@@ -223,8 +276,8 @@ impl Described {
         builder: &mut StepBuilder,
         scale: f64,
     ) -> Result<m::AdvancedFaceId, AuthorError> {
-        if let Form::Quadric(Quadric::Ellipsoid(axes)) = self.form {
-            return self.whole_ellipsoid(axes, builder, scale);
+        if let Form::Quadric(quadric) = &self.form {
+            return self.between_poles(quadric, builder, scale);
         }
         let x = self.across;
         let origin = self.origin * scale;
