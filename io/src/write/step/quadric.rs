@@ -141,7 +141,7 @@ pub(super) fn of(
                 steps(region.range(|point| local(point).y), SPANS),
             ]
         };
-        return patch(form, coefficients, breaks);
+        return patch(form, &coefficients, breaks);
     }
     if form.kind == QuadricKind::Ellipsoid {
         return stereographic(form, region);
@@ -173,7 +173,7 @@ pub(super) fn of(
         }
     }
     let breaks = [arc(PI - 0.5 * half), meridian.breaks];
-    patch(form, coefficients, breaks)
+    patch(form, &coefficients, breaks)
 }
 
 /// An elliptic cylinder. Readers cut it open where the ellipse begins: no edge may end there.
@@ -234,7 +234,7 @@ fn rectangle(form: &QuadricForm, at: DVec3) -> Option<Coefficients> {
 }
 
 /// A patch, from coefficients in the quadric's own axes.
-fn patch(form: &QuadricForm, own: Coefficients, breaks: [Vec<f64>; 2]) -> Option<Found> {
+fn patch(form: &QuadricForm, own: &Coefficients, breaks: [Vec<f64>; 2]) -> Option<Found> {
     let [x, y, z] = form.axes;
     let coefficients =
         own.map(|row| row.map(|p| (form.center * p.w + x * p.x + y * p.y + z * p.z).extend(p.w)));
@@ -276,7 +276,7 @@ fn stereographic(form: &QuadricForm, region: &Region) -> Option<Found> {
     own[2][0] = (pole * sizes).extend(1.0);
     own[0][2] = own[2][0];
     let breaks = arc(PI - 0.7 * clear);
-    patch(form, own, [breaks.clone(), breaks])
+    patch(form, &own, [breaks.clone(), breaks])
 }
 
 impl Quadric {

@@ -194,7 +194,13 @@ mod tests {
             breaks: [steps([-1.0, 2.0], 2), steps([-3.0, 1.0], 4)],
         };
         let spline = saddle.spline(1.0).expect("finite");
-        assert!(spline.weights.iter().flatten().all(|&w| w == 1.0));
+        assert!(
+            spline
+                .weights
+                .iter()
+                .flatten()
+                .all(|&w| (w - 1.0).abs() < 1e-15)
+        );
         for u in [-1.0, -0.2, 0.5, 1.3] {
             for v in [-3.0, -1.1, 0.0, 0.9] {
                 let columns: Vec<DVec4> = spline
