@@ -25,6 +25,7 @@ fn zero(polynomial: &str) -> String {
 
 /// All, each with its volume and the kinds of its surfaces; volumes are integrals over z, x or y
 /// that can be looked up.
+#[expect(clippy::too_many_lines, reason = "a table")]
 fn models() -> Vec<(&'static str, String, f64, &'static str)> {
     let wide = [-9.0, 9.0];
     // Part of a ball of radius 1 on one side of a plane at a distance.
