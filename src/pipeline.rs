@@ -10,7 +10,9 @@ use crate::run::Job;
 use crate::summary::{counted, significant};
 use crate::talk::Talk;
 use brep::simplify::{contract_knots, remove_degenerate};
-use brep::{Brep, Groups, IfTroubled, Properties, Quality, Retriangulated, Shells, Valid};
+use brep::{
+    Brep, Demand, Groups, IfTroubled, Proof, Properties, Quality, Retriangulated, Shells, Valid,
+};
 use csg::{PrimitiveId, Solid};
 use io::read::format::Format;
 use subdiv::{Fragments, Rule};
@@ -214,18 +216,32 @@ fn tessellated(
     report: &mut Report,
 ) -> Result<Option<Valid<Brep>>, Failure> {
     progress.begin("tessellation");
-    let tessellated = report.timed("tessellation", || {
-        brep::tessellate(topology, solid, tolerance, job.fit, if_troubled)
-    });
+    let components = topology.component_count();
+    let proof = if report.has_proved_manifold() {
+        Proof::BothWays { components }
+    } else {
+        Proof::OneWay
+    };
+    let demand = Demand {
+        tolerance,
+        fit: job.fit,
+        if_troubled,
+        proof,
+    };
+    let tessellated = report.timed("tessellation", || brep::tessellate(topology, solid, demand));
     stop_if_interrupted()?;
-    let Some((brep, counts)) = tessellated else {
+    let Some((brep, mut counts)) = tessellated else {
         return Ok(None);
     };
-    report.add_tessellation(&counts);
     if counts.kept_faces == 0 {
+        report.add_tessellation(&counts);
         return Ok(Some(brep));
     }
     let (brep, ..) = report.timed("merging", || merge(brep, solid))?;
+    // Facets of planes have changed.
+    let limit = counts.enclosure.map_or(0.0, |of| 2.0 * of.distance);
+    counts.enclosure = report.timed("proof", || brep::enclose(&brep, solid, None, limit).ok());
+    report.add_tessellation(&counts);
     Ok(Some(brep))
 }
 

@@ -45,6 +45,9 @@ pub(crate) struct Report {
     pub(crate) centroid: Option<[f64; 3]>,
     /// Largest proved distance between mesh and true boundary over all certified cells.
     pub(crate) proved_distance: Option<f64>,
+    /// Facets from surfaces: a proved bound on the distance of every point of the mesh from the true
+    /// boundary. The other way it is `proved_distance`.
+    pub(crate) proved_from_mesh: Option<f64>,
     /// Largest distance of a facet from its surface, measured, where facets were taken from the
     /// surfaces.
     pub(crate) largest_deviation: Option<f64>,
@@ -314,6 +317,7 @@ impl Report {
             volume_interval: None,
             centroid: None,
             proved_distance: None,
+            proved_from_mesh: None,
             largest_deviation: None,
             one_way_cells: 0,
             proved_topology: false,
@@ -345,10 +349,16 @@ impl Report {
     /// of numbers is left and nothing is unproved.
     pub(crate) fn deviation(&self) -> Option<String> {
         let rounding = 1e-9 * self.settings.tolerance.unwrap_or(0.0);
-        if let Some(distance) = self.largest_deviation {
-            let is_exact = distance <= rounding && self.proved_topology;
-            let measured = || format!("deviation {} (measured)", rounded_up(distance));
-            return Some(if is_exact { self.exact() } else { measured() });
+        if let Some(measured) = self.largest_deviation {
+            let is_exact = measured <= rounding && self.proved_topology;
+            return Some(match (self.proved_distance, self.proved_from_mesh) {
+                _ if is_exact => self.exact(),
+                (Some(proved), _) => format!("deviation <= {}", rounded_up(proved)),
+                (None, Some(proved)) if proved > rounding => {
+                    format!("deviation <= {} (of the mesh)", rounded_up(proved))
+                }
+                _ => format!("deviation {} (measured)", rounded_up(measured)),
+            });
         }
         let distance = self.proved_distance?;
         let is_whole = self.uncertified_count == 0 && self.one_way_cells == 0;
@@ -438,7 +448,14 @@ impl Report {
         self.counts.kept_edges = of.kept_edges as u64;
         self.largest_deviation = Some(of.largest_deviation);
         // What was proved of the subdivision's facets says nothing about these.
-        self.proved_distance = None;
+        let proved = of.enclosure.as_ref();
+        self.proved_from_mesh = proved.map(|of| of.distance);
+        self.proved_distance = proved.filter(|of| of.is_both_ways).map(|of| of.distance);
+    }
+
+    /// Whether the true boundary is proved to be a manifold, connected like the mesh.
+    pub(crate) fn has_proved_manifold(&self) -> bool {
+        self.proved_topology && self.split_vertices == 0
     }
 
     /// What is known about the solid before it is subdivided.

@@ -138,6 +138,9 @@ pub(crate) fn triple(vector: DVec3, scale: f64) -> String {
 
 /// A bound with two digits must not become smaller by rounding.
 pub(crate) fn rounded_up(bound: f64) -> String {
+    if bound <= 0.0 {
+        return significant(bound, 2);
+    }
     let unit = 10_f64.powf(bound.log10().floor() - 1.0);
     let up = unit * (bound / unit).ceil();
     // 0.07 · 1.0 may print as 0.07000000000000001.
@@ -167,5 +170,6 @@ mod tests {
         assert_eq!(rounded_up(0.05), "0.05");
         assert_eq!(rounded_up(9.99), "10");
         assert_eq!(rounded_up(123.4), "130");
+        assert_eq!(rounded_up(0.0), "0");
     }
 }

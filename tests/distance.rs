@@ -7,13 +7,15 @@
 mod stages;
 mod support;
 
+use brep::{Brep, Demand, Fit, IfTroubled, Proof, Valid, tessellate};
 use io::write::obj;
 use serde::Deserialize;
-use stages::convert;
+use stages::{convert, convert_model, read};
 use std::fs::{self, File};
 use std::io::BufWriter;
 use std::path::Path;
 use std::process::Command;
+use subdiv::Rule;
 
 #[derive(Debug, Deserialize)]
 struct Measured {
@@ -97,6 +99,23 @@ const SOLIDS: [(&str, &str, f64, bool); 22] = [
     ("quartic", "polynomial(\"x^4+y^4+z^4-1\");", 0.01, true),
 ];
 
+/// Facets from the true surfaces, and how near they are proved to be to the boundary, both ways.
+fn from_surfaces(source: &str, tolerance: f64) -> Option<(Valid<Brep>, f64)> {
+    let coarse = convert_model(&read(source), Rule::Topology { finest: tolerance });
+    assert_eq!(coarse.report.proved_topology, Some(true));
+    let demand = Demand {
+        tolerance,
+        fit: Fit::Inscribed,
+        if_troubled: IfTroubled::Refine,
+        proof: Proof::BothWays {
+            components: coarse.brep.component_count(),
+        },
+    };
+    let (brep, counts) = tessellate(&coarse.brep, &coarse.solid, demand)?;
+    let enclosure = counts.enclosure.filter(|of| of.is_both_ways)?;
+    Some((brep, enclosure.distance))
+}
+
 #[test]
 fn measured_distances_are_within_what_is_proved() {
     let samples = std::env::var("CSG2BREP_SAMPLES").unwrap_or_else(|_| "300".to_owned());
@@ -107,7 +126,7 @@ fn measured_distances_are_within_what_is_proved() {
         .arg(root.join("tests/python/distance.py"))
         .arg(&samples);
     let mut proved = Vec::new();
-    for (name, source, tolerance, _) in SOLIDS {
+    for (name, source, tolerance, smooth) in SOLIDS {
         let model = folder.path().join(format!("{name}.csg"));
         let source = if source.is_empty() {
             let fixture = root.join(format!("fixtures/solids/{name}.csg"));
@@ -124,16 +143,23 @@ fn measured_distances_are_within_what_is_proved() {
         assert_eq!(converted.report.uncertified_leaves, 0, "{name}");
         let bound = converted.report.largest_deviation.expect("a tolerance");
         assert!(bound <= tolerance, "{name}: {bound}");
-        proved.push(bound);
+        proved.push((name, bound, smooth));
+        // Facets from the true surfaces, with a proof of their own.
+        let (brep, bound) = from_surfaces(&source, tolerance).unwrap_or_else(|| panic!("{name}"));
+        assert!(bound <= tolerance, "{name}: {bound}");
+        let mesh = folder.path().join(format!("{name}-surfaces.obj"));
+        let mut file = BufWriter::new(File::create(&mesh).expect("a new file"));
+        obj::write(&brep, &obj::Options::default(), &mut file).expect("an OBJ file");
+        let model = folder.path().join(format!("{name}.csg"));
+        command.arg(model).arg(mesh);
+        proved.push((name, bound, smooth));
     }
     let output = command.output().expect("Python runs");
     let errors = String::from_utf8_lossy(&output.stderr);
     assert!(output.status.success(), "{errors}");
     let measured: Vec<Measured> = serde_json::from_slice(&output.stdout).expect("JSON");
     assert_eq!(measured.len(), proved.len());
-    for ((name, _, _, smooth), (measured, proved)) in
-        SOLIDS.into_iter().zip(measured.iter().zip(proved))
-    {
+    for ((name, proved, smooth), measured) in proved.into_iter().zip(&measured) {
         let worst = measured.mesh_to_true.max(measured.true_to_mesh);
         println!(
             "{name}: proved {proved:.3e}, mesh to true {:.3e}, true to mesh {:.3e}, ratio {:.2}",

@@ -12,7 +12,10 @@ mod support;
 mod trees;
 
 use brep::simplify::remove_degenerate;
-use brep::{Brep, Fit, Groups, IfTroubled, Properties, Shells, Tessellated, Valid, tessellate};
+use brep::{
+    Brep, Demand, Fit, Groups, IfTroubled, Proof, Properties, Shells, Tessellated, Valid,
+    tessellate,
+};
 use csg::{Model, Solid};
 use rayon::prelude::*;
 use std::f64::consts::PI;
@@ -29,7 +32,19 @@ fn tessellated(solid: &Solid, tolerance: f64) -> Option<(Valid<Brep>, Tessellate
 fn fitted(solid: &Solid, tolerance: f64, fit: Fit) -> Option<(Valid<Brep>, Tessellated, bool)> {
     let (coarse, report) = subdivided(solid, Rule::Topology { finest: tolerance });
     let proved = report.proved_topology == Some(true);
-    let (brep, counts) = like(&coarse, solid, tolerance, fit, IfTroubled::Refine)?;
+    let demand = Demand {
+        tolerance,
+        fit,
+        if_troubled: IfTroubled::Refine,
+        proof: if proved && report.split_vertices == 0 {
+            Proof::BothWays {
+                components: coarse.component_count(),
+            }
+        } else {
+            Proof::OneWay
+        },
+    };
+    let (brep, counts) = like(&coarse, solid, demand)?;
     Some((brep, counts, proved))
 }
 
@@ -45,14 +60,8 @@ fn subdivided(solid: &Solid, rule: Rule) -> (Valid<Brep>, subdiv::Report) {
 }
 
 /// Tessellates, and sees to it that faces, edges and vertices are those of the subdivision.
-fn like(
-    coarse: &Valid<Brep>,
-    solid: &Solid,
-    tolerance: f64,
-    fit: Fit,
-    if_troubled: IfTroubled,
-) -> Option<(Valid<Brep>, Tessellated)> {
-    let (brep, counts) = tessellate(coarse, solid, tolerance, fit, if_troubled)?;
+fn like(coarse: &Valid<Brep>, solid: &Solid, demand: Demand) -> Option<(Valid<Brep>, Tessellated)> {
+    let (brep, counts) = tessellate(coarse, solid, demand)?;
     let before = (signature(coarse), Groups::of(coarse));
     let after = (signature(&brep), Groups::of(&brep));
     assert_eq!(before.0, after.0);
@@ -182,6 +191,19 @@ fn every_fixture_comes_from_its_surfaces() {
     assert!(kept * 20 < from_surfaces, "{kept} beside {from_surfaces}");
     let compared = results.iter().filter(|(.., both)| *both).count();
     assert!(compared >= 20, "{compared}");
+    let enclosed = results
+        .iter()
+        .filter_map(|(_, counts, _)| counts.enclosure.as_ref());
+    let near = enclosed.clone().count();
+    let proved = enclosed.filter(|of| of.is_both_ways).count();
+    println!(
+        "{} fixtures: {near} proved to be near the boundary, {proved} both ways",
+        results.len()
+    );
+    assert!(
+        near * 10 >= results.len() * 7 && proved * 10 >= results.len() * 6,
+        "{near}, {proved}"
+    );
 }
 
 #[test]
@@ -213,8 +235,13 @@ fn bytes_do_not_depend_on_threads() {
                 ..Settings::new(Rule::Topology { finest: tolerance })
             };
             let coarse = stages::convert_solid(solid.clone(), &settings).brep;
-            let (brep, _) =
-                tessellate(&coarse, &solid, tolerance, Fit::Mean, IfTroubled::Refine).unwrap();
+            let demand = Demand {
+                tolerance,
+                fit: Fit::Mean,
+                if_troubled: IfTroubled::Refine,
+                proof: Proof::OneWay,
+            };
+            let (brep, _) = tessellate(&coarse, &solid, demand).unwrap();
             let mut bytes = Vec::new();
             io::write::obj::write(&brep, &io::write::obj::Options::default(), &mut bytes).unwrap();
             bytes
@@ -347,7 +374,13 @@ fn kept_where_needed(
     solid: &Solid,
     tolerance: f64,
 ) -> (Valid<Brep>, Tessellated) {
-    like(metric, solid, tolerance, Fit::Inscribed, IfTroubled::Keep).expect("an end")
+    let demand = Demand {
+        tolerance,
+        fit: Fit::Inscribed,
+        if_troubled: IfTroubled::Keep,
+        proof: Proof::OneWay,
+    };
+    like(metric, solid, demand).expect("an end")
 }
 
 /// The symmetric difference of two balls: along their circle four sheets meet, so that two B-Rep

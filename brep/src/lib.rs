@@ -31,12 +31,14 @@
 
 mod curve;
 mod edges;
+mod enclosure;
 mod error;
 mod euler;
 mod exact;
 mod geometry;
 mod ghosts;
 mod group;
+mod hierarchy;
 mod inspect;
 mod join;
 mod properties;
@@ -58,6 +60,7 @@ pub mod simplify;
 mod samples;
 
 pub use curve::{Curve, Curves, EdgeCurve, Piece, Spline};
+pub use enclosure::{Enclosure, Open, enclose};
 pub use error::Error;
 pub use euler::EulerCharacteristic;
 pub use exact::{Crumbs, ExactBrep, ExactEdge, ExactFace, ExactShell};
@@ -70,7 +73,9 @@ pub use quality::Quality;
 pub use shells::{Shell, ShellId, ShellRole, Shells, Solid};
 pub use smooth::{Corner, CornerId, Corners, Shading};
 pub use stitch::{check_manifold, stitch};
-pub use tessellate::{Fit, IfTroubled, Tessellated, passes_through_itself, tessellate};
+pub use tessellate::{
+    Demand, Fit, IfTroubled, Proof, Tessellated, passes_through_itself, tessellate,
+};
 pub use topology::{
     Brep, Facet, FacetKey, FacetView, HalfEdge, HalfEdgeKey, HalfEdgeView, Vertex, VertexKey,
     VertexView,

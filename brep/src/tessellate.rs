@@ -30,19 +30,48 @@ mod sheet;
 mod split;
 mod straighten;
 
+use crate::enclosure::{Enclosure, Open, enclose};
 use crate::group::{FaceId, Groups};
-use crate::topology::Brep;
+use crate::topology::{Brep, FacetView};
 use crate::triangulate::retriangulate;
 use crate::validate::Valid;
 pub use crossings::passes_through_itself;
+pub(crate) use crossings::side as side_of_plane;
 use csg::{PrimitiveId, Solid};
 pub use fit::Fit;
 use glam::DVec3;
 use patchwork::{NONE, Patchwork, Role, index};
 use sheet::Sheet;
 
+/// What is asked of facets.
+#[derive(Clone, Copy, PartialEq, Debug)]
+pub struct Demand {
+    /// Largest distance of facets from their surfaces, in model units.
+    pub tolerance: f64,
+    /// On which side of the surfaces facets are.
+    pub fit: Fit,
+    /// What becomes of faces that do not come out well.
+    pub if_troubled: IfTroubled,
+    /// What is to be proved.
+    pub proof: Proof,
+}
+
+/// What is to be proved of facets.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub enum Proof {
+    /// Nothing.
+    Nothing,
+    /// That they are near the solid's boundary.
+    OneWay,
+    /// Also that the boundary, which is proved to be a manifold of so many components, is near them.
+    BothWays {
+        /// How many.
+        components: usize,
+    },
+}
+
 /// What [`tessellate`] did.
-#[derive(Clone, Copy, PartialEq, Debug, Default)]
+#[derive(Clone, PartialEq, Debug, Default)]
 pub struct Tessellated {
     /// Faces whose facets were taken from their surfaces.
     pub faces: usize,
@@ -56,9 +85,24 @@ pub struct Tessellated {
     pub facets_before: usize,
     /// Number of facets after.
     pub facets_after: usize,
-    /// Largest distance of a facet from its surface, in model units.
+    /// Largest distance of a facet from its surface, in model units; measured.
     pub largest_deviation: f64,
+    /// What was proved, if it was asked for and could be.
+    pub enclosure: Option<Enclosure>,
 }
+
+/// What part of the tolerance facets use where something is to be proved: the rest is for what
+/// the proof takes for granted to be lost.
+const SHARE: f64 = 0.97;
+
+/// Times that facets are made finer since the proof asks for it.
+const PROOFS: usize = 3;
+
+/// What the tolerance of faces is multiplied by of which nothing was proved.
+const UNPROVED: f64 = 0.5;
+
+/// A distance is not looked for beyond this, in tolerances.
+const FARTHEST: f64 = 4.0;
 
 /// Flips after one change, at most: they come to an end by themselves, but for rounding.
 const FLIPS: usize = 64;
@@ -83,18 +127,16 @@ impl IfTroubled {
     }
 }
 
-/// Replaces the facets of a boundary by such as its surfaces need at this tolerance, in model
-/// units. `solid` is what the boundary was made from; `fit` says on which side of the surfaces
-/// the facets are.
+/// Replaces the facets of a boundary by such as its surfaces need at this tolerance. `solid` is what
+/// the boundary was made from.
 ///
 /// Faces, edges, vertices, shells and genus stay what they are. `None` if that cannot be had:
-/// then the boundary's own facets are the answer.
+/// then the boundary's own facets are the answer. If a proof is asked for, facets are made finer
+/// where it needs that; what was proved in the end is in the result.
 pub fn tessellate(
     brep: &Valid<Brep>,
     solid: &Solid,
-    tolerance: f64,
-    fit: Fit,
-    if_troubled: IfTroubled,
+    demand: Demand,
 ) -> Option<(Valid<Brep>, Tessellated)> {
     let groups = Groups::of(brep);
     let sheets: Vec<Sheet<'_>> = solid
@@ -104,22 +146,23 @@ pub fn tessellate(
         .collect();
     let is_plane = |PrimitiveId(at): PrimitiveId| sheets[at as usize].is_plane();
     if (groups.faces.iter()).all(|face| is_plane(face.primitive)) {
-        let (result, counts) = retriangulate(brep.clone(), is_plane);
-        let counts = Tessellated {
-            faces: counts.faces,
-            kept_faces: counts.kept,
-            facets_before: counts.facets_before,
-            facets_after: counts.facets_after,
-            ..Tessellated::default()
-        };
-        return Some((result, counts));
+        return Some(demand.planar(brep, solid, is_plane));
     }
+    let tolerance = match demand.proof {
+        Proof::Nothing => demand.tolerance,
+        _ => SHARE * demand.tolerance,
+    };
     let mut tolerances: Vec<f64> = (groups.faces.iter())
-        .map(|face| fit.inscribed_tolerance(&sheets[face.primitive.0 as usize], tolerance))
+        .map(|face| {
+            let sheet = &sheets[face.primitive.0 as usize];
+            demand.fit.inscribed_tolerance(sheet, tolerance)
+        })
         .collect();
     let mut kept = vec![false; groups.faces.len()];
     let (mut most_facets, mut fewest) = (usize::MAX, usize::MAX);
-    for round in 0..if_troubled.rounds() {
+    let mut best: Option<(Valid<Brep>, Tessellated)> = None;
+    let mut proofs = 0;
+    for round in 0..demand.if_troubled.rounds() {
         let plan = Plan {
             groups: &groups,
             sheets: &sheets,
@@ -129,18 +172,20 @@ pub fn tessellate(
         };
         let mut run = Run::new(brep, plan, solid);
         if round == 0 {
-            let most = match if_troubled {
+            let most = match demand.if_troubled {
                 IfTroubled::Refine => 8 * run.mesh.face.len() + 1024,
                 IfTroubled::Keep => 2 * brep.facet_count() + 1024,
             };
             run.most_facets = most;
             most_facets = most;
         }
-        if fit == Fit::Mean {
+        if demand.fit == Fit::Mean {
             run.fit_mean(tolerance);
         }
         match run.mended(tolerance) {
             Ok(result) => {
+                let proved = demand.proved(&result, solid);
+                let finer = demand.finer_faces(&result, proved.as_ref(), groups.faces.len());
                 let counts = Tessellated {
                     faces: groups.faces.len() - kept_faces(&kept),
                     kept_faces: kept_faces(&kept),
@@ -149,23 +194,36 @@ pub fn tessellate(
                     facets_before: brep.facet_count(),
                     facets_after: result.facet_count(),
                     largest_deviation: run.largest_deviation(),
+                    enclosure: proved.and_then(Result::ok),
                 };
-                return Some((result, counts));
+                let is_better = best
+                    .as_ref()
+                    .is_none_or(|(_, other)| counts.is_nearer_than(other));
+                if is_better {
+                    best = Some((result, counts));
+                }
+                if finer.is_empty() || proofs == demand.proofs() {
+                    break;
+                }
+                proofs += 1;
+                for (face, factor) in finer {
+                    tolerances[face] *= factor;
+                }
             }
             Err(troubles) => {
                 let troubled = assemble::finer_faces(&troubles);
-                let is_hopeless = match if_troubled {
+                let is_hopeless = match demand.if_troubled {
                     IfTroubled::Refine => {
                         troubled.len() >= fewest || run.mesh.face.len() > most_facets
                     }
                     IfTroubled::Keep => false,
                 };
                 if troubled.is_empty() || is_hopeless {
-                    return None;
+                    break;
                 }
                 fewest = troubled.len();
                 for (face, finer) in troubled {
-                    match if_troubled {
+                    match demand.if_troubled {
                         IfTroubled::Refine => tolerances[face] *= finer,
                         IfTroubled::Keep => kept[face] = true,
                     }
@@ -173,7 +231,97 @@ pub fn tessellate(
             }
         }
     }
-    None
+    best
+}
+
+impl Demand {
+    /// Times that facets may be made finer since the proof asks for it. What keeps facets of the
+    /// subdivision is not done again.
+    fn proofs(&self) -> usize {
+        match self.if_troubled {
+            IfTroubled::Refine => PROOFS,
+            IfTroubled::Keep => 0,
+        }
+    }
+
+    /// Facets of a solid that has planes only.
+    fn planar(
+        &self,
+        brep: &Valid<Brep>,
+        solid: &Solid,
+        is_plane: impl Fn(PrimitiveId) -> bool,
+    ) -> (Valid<Brep>, Tessellated) {
+        let (result, counts) = retriangulate(brep.clone(), is_plane);
+        let counts = Tessellated {
+            faces: counts.faces,
+            kept_faces: counts.kept,
+            facets_before: counts.facets_before,
+            facets_after: counts.facets_after,
+            enclosure: self.proved(&result, solid).and_then(Result::ok),
+            ..Tessellated::default()
+        };
+        (result, counts)
+    }
+
+    /// What can be proved of what is to be.
+    fn proved(&self, brep: &Valid<Brep>, solid: &Solid) -> Option<Result<Enclosure, Open>> {
+        let components = match self.proof {
+            Proof::Nothing => return None,
+            Proof::OneWay => None,
+            Proof::BothWays { components } => Some(components),
+        };
+        Some(enclose(brep, solid, components, FARTHEST * self.tolerance))
+    }
+
+    /// Faces that are farther from the boundary, for all that is proved, than they should be, each with what its
+    /// tolerance should be multiplied by.
+    fn finer_faces(
+        &self,
+        brep: &Valid<Brep>,
+        proved: Option<&Result<Enclosure, Open>>,
+        faces: usize,
+    ) -> Vec<(usize, f64)> {
+        let mut factors = vec![1.0f64; faces];
+        let groups = Groups::of(brep);
+        if groups.faces.len() != faces {
+            return Vec::new();
+        }
+        // A solid that touches itself, or has a cone's apex, has places where no facets are fine enough.
+        let is_provable = matches!(self.proof, Proof::BothWays { .. });
+        let of_facet = |(facet, view): (usize, FacetView<'_>)| {
+            let factor = match proved {
+                Some(Ok(enclosure)) => SHARE * self.tolerance / enclosure.by_facet[facet],
+                Some(Err(open)) if is_provable && open.facets.binary_search(&facet).is_ok() => {
+                    UNPROVED
+                }
+                _ => 1.0,
+            };
+            (groups.face_of[view.key()], factor)
+        };
+        let is_near = matches!(proved, Some(Ok(enclosure)) if enclosure.distance <= self.tolerance);
+        if !is_near {
+            for (FaceId(face), factor) in brep.facets().enumerate().map(of_facet) {
+                let of_face = &mut factors[face as usize];
+                *of_face = of_face.min(factor);
+            }
+        }
+        (0..)
+            .zip(factors)
+            .filter(|(_, factor)| *factor < SHARE)
+            .collect()
+    }
+}
+
+impl Tessellated {
+    /// Whether more is proved than of another one.
+    fn is_nearer_than(&self, other: &Self) -> bool {
+        match (&self.enclosure, &other.enclosure) {
+            (Some(own), Some(others)) => {
+                (own.is_both_ways, -own.distance) > (others.is_both_ways, -others.distance)
+            }
+            (own, others) => own.is_some() && others.is_none(),
+        }
+    }
 }
 
 fn kept_faces(kept: &[bool]) -> usize {

@@ -42,8 +42,9 @@ const MEASURES: [(&str, Which); 2] = [
 ];
 
 /// The ways that are compared, in this order.
-const WAYS: [&str; 6] = [
+const WAYS: [&str; 7] = [
     "surfaces",
+    "surfaces, proved",
     "surfaces, mean fit",
     "tolerance",
     "level",
@@ -72,10 +73,10 @@ fn main() {
             );
             println!("|---|---|---|---:|---:|---:|---:|---:|\n{}", table.rows);
             println!(
-                "| | surfaces / manifold3d | triangles | mean fit / manifold3d | triangles | \
+                "| | surfaces / manifold3d | triangles | proved / manifold3d | triangles | mean fit / manifold3d | triangles | \
                  surfaces / fidget | tolerance / fidget | level / fidget |"
             );
-            println!("|---|---:|---:|---:|---:|---:|---:|---:|\n{}", table.ratios);
+            println!("|---|---:|---:|---:|---:|---:|---:|---:|---:|---:|\n{}", table.ratios);
         }
     }
 }
@@ -112,10 +113,13 @@ fn compare(solid: &Solid, manifold: &Manifold, tables: &mut [[Table; 2]; 2]) {
     let side = truth.longest_side;
     let finest = TARGETS[0] * side;
     // A program's ways to the same end; the quickest that is close enough counts.
-    let surfaces = |fit| vec![search::our_surfaces(&model, &truth, &TARGETS, fit)];
+    let surfaces = |fit, is_proved| {
+        vec![search::our_surfaces(&model, &truth, &TARGETS, fit, is_proved)]
+    };
     let ways = [
-        surfaces(brep::Fit::Inscribed),
-        surfaces(brep::Fit::Mean),
+        surfaces(brep::Fit::Inscribed, false),
+        surfaces(brep::Fit::Inscribed, true),
+        surfaces(brep::Fit::Mean, false),
         vec![search::our_tolerances(&model, &truth, finest)],
         vec![search::our_levels(&model, &truth, finest)],
         vec![search::manifold_segments(manifold, solid, &truth, finest)],
@@ -149,8 +153,8 @@ impl Subject<'_> {
     fn time(&self, setting: Setting) -> f64 {
         match setting {
             Setting::Ours(rule) => milliseconds(|| tools::ours(&self.model, rule)),
-            Setting::Surfaces(tolerance, fit) => {
-                milliseconds(|| tools::ours_from_surfaces(&self.model, tolerance, fit))
+            Setting::Surfaces(tolerance, fit, is_proved) => {
+                milliseconds(|| tools::ours_from_surfaces(&self.model, tolerance, fit, is_proved))
             }
             Setting::Manifold(segments) => self.manifold.time(self.solid.name, segments),
             Setting::Fidget(form, grid) => {
@@ -170,8 +174,9 @@ impl Subject<'_> {
     fn peak_bytes(&self, setting: Setting) -> Option<usize> {
         Some(match setting {
             Setting::Ours(rule) => memory::peak_of(|| tools::ours(&self.model, rule)).1,
-            Setting::Surfaces(tolerance, fit) => {
-                memory::peak_of(|| tools::ours_from_surfaces(&self.model, tolerance, fit)).1
+            Setting::Surfaces(tolerance, fit, is_proved) => {
+                let ours = || tools::ours_from_surfaces(&self.model, tolerance, fit, is_proved);
+                memory::peak_of(ours).1
             }
             Setting::Manifold(_) => return None,
             Setting::Fidget(form, grid) => {
@@ -211,11 +216,13 @@ impl Subject<'_> {
             _ => "–".to_owned(),
         };
         table.ratios += &format!(
-            "| {} {} | {} | {} | {} | {} | {} | {} | {} |\n",
+            "| {} {} | {} | {} | {} | {} | {} | {} | {} | {} | {} |\n",
             self.solid.name,
             self.solid.what,
             time("surfaces", "manifold3d"),
             triangles("surfaces", "manifold3d"),
+            time("surfaces, proved", "manifold3d"),
+            triangles("surfaces, proved", "manifold3d"),
             time("surfaces, mean fit", "manifold3d"),
             triangles("surfaces, mean fit", "manifold3d"),
             time("surfaces", "fidget"),
@@ -230,10 +237,11 @@ impl Subject<'_> {
             Setting::Ours(Rule::Tolerance(t)) => ("ours", format!("tolerance {:.1e}", t / side)),
             Setting::Ours(Rule::Level(level)) => ("ours", format!("level {level}")),
             Setting::Ours(Rule::Topology { finest }) => ("ours", format!("cells {finest:.1e}")),
-            Setting::Surfaces(t, brep::Fit::Inscribed) => {
-                ("ours", format!("surfaces, tolerance {:.2e}", t / side))
+            Setting::Surfaces(t, brep::Fit::Inscribed, is_proved) => {
+                let proved = if is_proved { ", proved" } else { "" };
+                ("ours", format!("surfaces{proved}, tolerance {:.2e}", t / side))
             }
-            Setting::Surfaces(t, brep::Fit::Mean) => (
+            Setting::Surfaces(t, brep::Fit::Mean, _) => (
                 "ours",
                 format!("surfaces, mean fit, tolerance {:.2e}", t / side),
             ),

@@ -13,8 +13,8 @@ use subdiv::Rule;
 pub enum Setting {
     /// Ours.
     Ours(Rule),
-    /// Ours from the true surfaces, with a tolerance.
-    Surfaces(f64, brep::Fit),
+    /// Ours from the true surfaces, with a tolerance; whether it is proved.
+    Surfaces(f64, brep::Fit, bool),
     /// manifold3d's number of segments a circle.
     Manifold(u32),
     /// fidget's.
@@ -91,15 +91,16 @@ pub fn our_surfaces(
     truth: &Truth<'_>,
     targets: &[f64],
     fit: brep::Fit,
+    is_proved: bool,
 ) -> Vec<Attempt> {
     let mut list = Vec::new();
     for target in targets {
         for part in NEAR {
             let tolerance = part * target * truth.longest_side;
-            let Some(brep) = tools::ours_from_surfaces(model, tolerance, fit) else {
+            let Some(brep) = tools::ours_from_surfaces(model, tolerance, fit, is_proved) else {
                 continue;
             };
-            let setting = Setting::Surfaces(tolerance, fit);
+            let setting = Setting::Surfaces(tolerance, fit, is_proved);
             list.extend(Attempt::of(setting, &tools::brep_mesh(&brep), truth));
         }
     }

@@ -21,6 +21,7 @@ pub fn ours_from_surfaces(
     model: &csg::Model,
     tolerance: f64,
     fit: brep::Fit,
+    is_proved: bool,
 ) -> Option<brep::Valid<brep::Brep>> {
     let solid = csg::Solid::build(model, None).expect("a bounded solid");
     let rule = subdiv::Rule::Topology { finest: tolerance };
@@ -29,7 +30,19 @@ pub fn ours_from_surfaces(
     let outcome = subdiv::convert(&solid, &settings, &()).expect("a conversion within the limits");
     let stitched = brep::stitch(&outcome.fragments).expect("paired half-edges");
     let coarse = stitched.validate().expect("a manifold");
-    Some(brep::tessellate(&coarse, &solid, tolerance, fit, brep::IfTroubled::Refine)?.0)
+    let components = coarse.component_count();
+    let proof = if is_proved && outcome.report.proved_topology == Some(true) {
+        brep::Proof::BothWays { components }
+    } else {
+        brep::Proof::Nothing
+    };
+    let demand = brep::Demand {
+        tolerance,
+        fit,
+        if_troubled: brep::IfTroubled::Refine,
+        proof,
+    };
+    Some(brep::tessellate(&coarse, &solid, demand)?.0)
 }
 
 /// A B-Rep's triangles as a mesh.

@@ -1,9 +1,9 @@
 //! Triangles that pass through each other.
 
+use crate::hierarchy::Hierarchy;
 use crate::topology::{Brep, VertexView};
 use glam::DVec3;
 use robust::{Coord3D, orient3d};
-use std::ops::Range;
 
 /// Pairs of triangles, by number, that pass through each other: an edge of one goes through the
 /// inside of the other. Touching is no crossing. Decided exactly.
@@ -91,101 +91,6 @@ impl Plane {
     }
 }
 
-/// Triangles in a leaf of the hierarchy, at most.
-const LEAF: usize = 4;
-
-/// A box along the axes.
-#[derive(Clone, Copy)]
-struct Bounds([DVec3; 2]);
-
-impl Bounds {
-    fn around(self, Self([low, high]): Self) -> Self {
-        Self([self.0[0].min(low), self.0[1].max(high)])
-    }
-
-    fn overlaps(self, Self([low, high]): Self) -> bool {
-        !(self.0[0].cmpgt(high) | low.cmpgt(self.0[1])).any()
-    }
-}
-
-/// Boxes around halves of halves of all triangles: node n has the children 2n + 1 and 2n + 2,
-/// and all leaves are on one level.
-struct Hierarchy {
-    nodes: Vec<(Bounds, Range<usize>)>,
-    /// The triangles that the nodes' ranges mean, with their boxes.
-    order: Vec<(usize, Bounds)>,
-}
-
-impl Hierarchy {
-    fn of(positions: &[DVec3], triangles: &[[u32; 3]]) -> Self {
-        let mut order: Vec<(usize, Bounds)> = (triangles.iter())
-            .map(|corners| {
-                let [a, b, c] = corners.map(|v| positions[v as usize]);
-                Bounds([a.min(b).min(c), a.max(b).max(c)])
-            })
-            .enumerate()
-            .collect();
-        let mut nodes = Vec::new();
-        let mut level = Vec::from([Range {
-            start: 0,
-            end: order.len(),
-        }]);
-        loop {
-            let is_last = level.iter().all(|range| range.len() <= LEAF);
-            let mut below = Vec::with_capacity(2 * level.len());
-            for range in level {
-                let part = &mut order[range.clone()];
-                let none = Bounds([DVec3::INFINITY, DVec3::NEG_INFINITY]);
-                let bounds = part.iter().fold(none, |all, (_, one)| all.around(*one));
-                if !is_last {
-                    let axis = (bounds.0[1] - bounds.0[0]).max_position();
-                    let place = |(_, Bounds([low, high])): &(usize, Bounds)| low[axis] + high[axis];
-                    let half = part.len() / 2;
-                    part.select_nth_unstable_by(half, |one, other| {
-                        place(one)
-                            .total_cmp(&place(other))
-                            .then(one.0.cmp(&other.0))
-                    });
-                    let middle = range.start + half;
-                    below.extend([range.start..middle, middle..range.end]);
-                }
-                nodes.push((bounds, range));
-            }
-            if is_last {
-                return Self { nodes, order };
-            }
-            level = below;
-        }
-    }
-
-    /// Calls `visit` for each pair of triangles whose boxes overlap.
-    fn for_each_overlap(&self, mut visit: impl FnMut(usize, usize)) {
-        let mut open = vec![[0, 0]];
-        while let Some([m, n]) = open.pop() {
-            let [(one, of_one), (other, of_other)] = [m, n].map(|node| &self.nodes[node]);
-            if !one.overlaps(*other) {
-                continue;
-            }
-            let [[a, b], [c, d]] = [m, n].map(|node| [2 * node + 1, 2 * node + 2]);
-            if a < self.nodes.len() {
-                open.extend([[a, c], [a, d], [b, d]]);
-                if m != n {
-                    open.push([b, c]);
-                }
-                continue;
-            }
-            for (at, (s, low)) in (of_one.start..).zip(&self.order[of_one.clone()]) {
-                let from = if m == n { at + 1 } else { of_other.start };
-                for (t, high) in &self.order[from..of_other.end] {
-                    if low.overlaps(*high) {
-                        visit(*s, *t);
-                    }
-                }
-            }
-        }
-    }
-}
-
 fn cross(positions: &[DVec3], one: [u32; 3], other: [u32; 3]) -> bool {
     let edges = |[a, b, c]: [u32; 3]| [[a, b], [b, c], [c, a]];
     let through = |edge: [u32; 2], triangle: [u32; 3]| {
@@ -200,16 +105,19 @@ fn cross(positions: &[DVec3], one: [u32; 3], other: [u32; 3]) -> bool {
         || edges(other).into_iter().any(|edge| through(edge, one))
 }
 
+/// On which side of the plane through a, b and c the point d is: positive where they are clockwise seen
+/// from it, zero on it. The sign is exact.
+pub(crate) fn side(a: DVec3, b: DVec3, c: DVec3, d: DVec3) -> f64 {
+    let [a, b, c, d] = [a, b, c, d].map(|v| Coord3D {
+        x: v.x,
+        y: v.y,
+        z: v.z,
+    });
+    orient3d(a, b, c, d)
+}
+
 /// Whether a segment goes through the inside of a triangle.
 fn passes([p, q]: [DVec3; 2], [a, b, c]: [DVec3; 3]) -> bool {
-    let side = |a: DVec3, b: DVec3, c: DVec3, d: DVec3| {
-        let [a, b, c, d] = [a, b, c, d].map(|v| Coord3D {
-            x: v.x,
-            y: v.y,
-            z: v.z,
-        });
-        orient3d(a, b, c, d)
-    };
     let (from, to) = (side(a, b, c, p), side(a, b, c, q));
     let opposite = (from > 0.0 && to < 0.0) || (from < 0.0 && to > 0.0);
     if !opposite {
