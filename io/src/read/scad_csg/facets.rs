@@ -1,7 +1,7 @@
 //! The boundary of a part of the model as triangles, for the nodes that ask for measures of it:
 //! hulls, shadows and sections of what was cut, sizes of what is to be resized.
 
-use brep::{Brep, Fit, IfTroubled, Valid};
+use brep::{Brep, Demand, Fit, IfTroubled, Proof, Valid};
 use csg::{ModelBuilder, NodeId, PrimitiveId, Solid};
 use glam::DVec3;
 use subdiv::{Rule, Settings};
@@ -50,9 +50,14 @@ impl Facets {
     pub(super) fn few(builder: &ModelBuilder, root: NodeId, coarseness: f64) -> Option<Self> {
         let solid = Solid::build(&builder.subtree(root), None).ok()?;
         let finest = SAGITTA * coarseness * solid.extent.diagonal();
-        let few = boundary(&solid, Rule::Topology { finest }).and_then(|brep| {
-            brep::tessellate(&brep, &solid, finest, Fit::default(), IfTroubled::Refine)
-        });
+        let demand = Demand {
+            tolerance: finest,
+            fit: Fit::default(),
+            if_troubled: IfTroubled::Refine,
+            proof: Proof::Nothing,
+        };
+        let few = boundary(&solid, Rule::Topology { finest })
+            .and_then(|brep| brep::tessellate(&brep, &solid, demand));
         match few {
             Some((brep, _)) => Some(Self::of_boundary(brep, &solid, finest)),
             None => Self::of(builder, root, coarseness),
