@@ -95,8 +95,12 @@ pub struct Tessellated {
 /// the proof takes for granted to be lost.
 const SHARE: f64 = 0.97;
 
+/// What part of the tolerance is aimed at by faces that come out of it: what is proved does not
+/// shrink as fast as they do.
+const AIM: f64 = 0.94;
+
 /// Times that facets are made finer since the proof asks for it.
-const PROOFS: usize = 3;
+const PROOFS: usize = 4;
 
 /// What the tolerance of faces is multiplied by of which nothing was proved.
 const UNPROVED: f64 = 0.5;
@@ -290,7 +294,7 @@ impl Demand {
         let is_provable = matches!(self.proof, Proof::BothWays { .. });
         let of_facet = |(facet, view): (usize, FacetView<'_>)| {
             let factor = match proved {
-                Some(Ok(enclosure)) => SHARE * self.tolerance / enclosure.by_facet[facet],
+                Some(Ok(enclosure)) => AIM * self.tolerance / enclosure.by_facet[facet],
                 Some(Err(open)) if is_provable && open.facets.binary_search(&facet).is_ok() => {
                     UNPROVED
                 }
