@@ -25,7 +25,7 @@ const SAME: f64 = 1e-9;
 
 /// Most levels by which tips of needles are refined beyond the others: their cells grow in number as
 /// they get thinner. Reached at half-angles of 0.9°.
-const MOST_EXTRA: u8 = 18;
+const MOST_EXTRA: f64 = 18.0;
 
 /// A primitive that is a double cone, in unit coordinates: p = ±(|u|² − v²).
 #[derive(Clone, Debug)]
@@ -187,11 +187,8 @@ impl DoubleCone {
     #[must_use]
     pub(crate) fn extra_levels(&self) -> u8 {
         let sharpness = self.widest() / self.along.length();
-        let levels = 3.0 * sharpness.log2();
-        let mut fewer = 0..MOST_EXTRA;
-        fewer
-            .find(|n| f64::from(*n) >= levels)
-            .unwrap_or(MOST_EXTRA)
+        let levels = (3.0 * sharpness.log2()).ceil().clamp(0.0, MOST_EXTRA);
+        levels as u8
     }
 
     /// Largest |∇(e·u)| for unit vectors e.
@@ -227,7 +224,7 @@ impl DoubleCone {
             });
         }
         let plane = self.plane?;
-        let (mut joined, mut upper) = (0, None);
+        let (mut joined, mut sign) = (0, None);
         for (at, node) in formula.iter().enumerate() {
             let is_union = match node {
                 FormulaNode::Union { .. } => true,
@@ -253,11 +250,16 @@ impl DoubleCone {
             if is_inner == is_union {
                 return None;
             }
-            let is_upper = ((of_plane == Sense::Inside) == is_inner) != plane.grows;
-            if upper.is_some_and(|upper| upper != is_upper) {
+            let selects_negative = (of_plane == Sense::Inside) == is_inner;
+            let this = if selects_negative == plane.grows {
+                -1.0
+            } else {
+                1.0
+            };
+            if sign.is_some_and(|sign| sign != this) {
                 return None;
             }
-            upper = Some(is_upper);
+            sign = Some(this);
             joined += 1;
         }
         let count = |wanted: u32| {
@@ -268,7 +270,7 @@ impl DoubleCone {
             return None;
         }
         Some(Facing {
-            sign: if upper? { 1.0 } else { -1.0 },
+            sign: sign?,
             by_plane: true,
             absorbed: (count(plane.primitive.0) == joined).then_some(plane.primitive.0),
         })

@@ -166,10 +166,7 @@ impl<'a> Prover<'a> {
                 *largest = largest.max(proved.distance);
                 self.findings.one_way_leaves += u64::from(!proved.both_ways);
                 for &cone in self.rule.apexes() {
-                    // No larger: specks are as large as the cells.
-                    if simplex.level >= self.plan.max_level {
-                        self.findings.doubtful.push(simplex);
-                    }
+                    self.findings.doubtful.push(simplex);
                     let reach = self.plan.cones[cone as usize].as_ref();
                     let reach = reach.filter(|_| proved.alone).map(|c| c.reach_of(simplex));
                     self.findings
