@@ -24,7 +24,7 @@ struct Measured {
 }
 
 /// Name, source or fixture, tolerance; whether the solid is smooth.
-const SOLIDS: [(&str, &str, f64, bool); 22] = [
+const SOLIDS: [(&str, &str, f64, bool); 18] = [
     ("S1_sphere", "", 0.01, true),
     ("S2_demo", "", 0.01, false),
     ("S3_torus_sphere", "", 0.01, true),
@@ -46,16 +46,6 @@ const SOLIDS: [(&str, &str, f64, bool); 22] = [
         false,
     ),
     ("frustum", "cylinder(h=2, r1=1, r2=0.4);", 0.01, false),
-    ("cone", "cylinder(h=1, r1=1, r2=0);", 0.01, false),
-    ("flat_cone", "cylinder(h=0.3, r1=1, r2=0);", 0.02, false),
-    ("needle", "cylinder(h=6, r1=0, r2=0.5);", 0.04, false),
-    (
-        "cone_in_a_block",
-        "difference() { cube(size=[2,2,2], center=true); \
-         multmatrix([[0.36,0.48,-0.8,0.3],[-0.8,0.6,0,0.1],[0.48,0.64,0.6,-0.4],[0,0,0,1]]) { cylinder(h=3, r1=0, r2=2); } }",
-        0.02,
-        false,
-    ),
     (
         "tee",
         "union() { cylinder(h=4, r=0.5, center=true); \

@@ -204,48 +204,9 @@ pub(crate) struct Sheet {
     spread: f64,
     /// Bound on the error of the coefficients.
     pub error: f64,
-    /// How much of the way in a sheet's own best direction counts; 1 but for nappes.
-    alone: f64,
-    /// Of one nappe of a cone.
-    pub nappe: Option<Nappe>,
-}
-
-/// What is special of a sheet that is one nappe of a cone (`crate::nappe`).
-#[derive(Clone, Copy, PartialEq, Eq, Debug)]
-pub(crate) struct Nappe {
-    /// Whether a plane through the apex takes part.
-    pub by_plane: bool,
-    /// Whether the apex may be in the simplex, or as near as the interpolant can tell.
-    pub blunt: bool,
 }
 
 impl Sheet {
-    /// One nappe of a cone, in units of |u| − v: `normal` is the middle of its gradients, of length
-    /// `slope`, from which they are at most `spread` away; `steepness` the least of their lengths.
-    #[must_use]
-    pub(crate) fn of_nappe(
-        nappe: Nappe,
-        values: [f64; 4],
-        normal: DVec3,
-        [slope, spread]: [f64; 2],
-        [swing, steepness]: [f64; 2],
-    ) -> Self {
-        let sine = (spread / slope).min(1.0);
-        Self {
-            degree: 2,
-            values,
-            normal,
-            slope,
-            swing,
-            steepness,
-            bend: [0.0; 2],
-            spread,
-            error: 0.0,
-            alone: (1.0 - sine * sine).sqrt() * (1.0 - 1e-12),
-            nappe: Some(nappe),
-        }
-    }
-
     /// Bounds a primitive.
     ///
     /// `control`: work space. `None` when even without other primitives p = 0 is not within the
@@ -287,8 +248,6 @@ impl Sheet {
             bend: [0.0; 2],
             spread: slope_error,
             error,
-            alone: 1.0,
-            nappe: None,
         };
         if n == 1 {
             // Planes are their own interpolants.
@@ -351,7 +310,7 @@ impl Sheet {
 
     /// Finds s.
     pub(crate) fn find_spread(&mut self, table: &DegreeTable, coefficients: &[f64], place: &Place) {
-        if self.degree > 1 && self.nappe.is_none() {
+        if self.degree > 1 {
             let mean = self.normal * self.slope;
             let far = |control: DVec3| (control - mean).length_squared();
             let control = table.control_gradients(coefficients, &place.gradients);
@@ -362,11 +321,6 @@ impl Sheet {
     /// sin φ; 1 where φ is a right angle or more.
     pub(crate) fn spread_sine(&self, around: &Around) -> f64 {
         ((self.spread + around.radius * self.bend(around)) / self.slope).min(1.0)
-    }
-
-    /// The cosine that [`Self::reach`] takes where there is no other sheet.
-    pub(crate) fn own_cosine(&self) -> f64 {
-        self.alone
     }
 
     /// The least distance in which the boundary may be reached, whatever is around.

@@ -10,13 +10,11 @@ use crate::hessian::Hessian;
 use crate::lattice::MAX_LEVEL;
 use crate::limits::Budget;
 use crate::margin::Margin;
-use crate::nappe::DoubleCone;
 use crate::prove::{Proof, Prover, prove};
 use crate::settings::{Observer, Report, Rule, Settings};
 use crate::specks::Doubtful;
-use crate::tips::Tips;
 use crate::topology::kindred::{Kin, families};
-use crate::walk::{Frame, Sector, Visitor, Walker};
+use crate::walk::{Sector, Visitor, Walker};
 use csg::{KnownBoundary, Solid};
 use rustc_hash::FxHashSet;
 use std::sync::Arc;
@@ -111,8 +109,6 @@ pub(crate) struct Plan<'a> {
     pub(crate) labelled: bool,
     /// Of each primitive, for the topological rule.
     pub(crate) families: Vec<Option<Kin>>,
-    /// The primitives that are double cones, for the metric rule.
-    pub(crate) cones: Vec<Option<DoubleCone>>,
     /// Second derivatives of each quadric.
     pub(crate) hessians: Vec<Option<Hessian>>,
     /// Three tolerances, with the metric rule.
@@ -149,7 +145,6 @@ impl<'a> Plan<'a> {
             settings,
             roots,
             margin: tolerance.map(|t| Arc::new(Margin::new(3.0 * t, &tables, &hessians))),
-            cones: DoubleCone::all(&solid.primitives, &solid.domain),
             hessians,
             tables,
             tolerance,
@@ -163,18 +158,6 @@ impl<'a> Plan<'a> {
     /// Whether a rule decides where to bisect.
     pub(crate) fn is_adaptive(&self) -> bool {
         self.tolerance.is_some() || self.topology
-    }
-
-    /// The deepest level of a simplex: beyond the others' at a needle's tip, which is several of
-    /// their cells long where it is as thin as they are.
-    pub(crate) fn deepest_level(&self, frame: &Frame) -> u8 {
-        if self.settings.max_level.is_some() || self.tolerance.is_none() {
-            return self.max_level;
-        }
-        let cones = frame.active.iter();
-        let cones = cones.filter_map(|active| self.cones[active.primitive as usize].as_ref());
-        let more = cones.map(DoubleCone::extra_levels).max().unwrap_or(0);
-        (self.max_level + more).min(MAX_LEVEL)
     }
 
     /// A walker whose frames hold what the formula needs in each simplex.
@@ -235,20 +218,19 @@ fn run(plan: &Plan<'_>, observer: &dyn Observer) -> Result<Outcome, Error> {
         .then(|| prove(plan, &budget, &sectors, head, &mut report, observer));
     lap(&mut report.seconds[0]);
     budget.check()?;
-    let (mut splits, trails, doubtful, tips) = match proof {
+    let (mut splits, trails, doubtful) = match proof {
         Some(Proof {
             splits,
             trails,
             doubtful,
-            tips,
         }) => {
             let count = splits.len();
             let mut all = FxHashSet::with_capacity_and_hasher(count * 2, rustc_hash::FxBuildHasher);
             close(&mut all, splits, |_| {});
             report.balance_points = (all.len() - count) as u64;
-            (Some(all), trails, doubtful, tips)
+            (Some(all), trails, doubtful)
         }
-        None => (None, Vec::new(), Doubtful::default(), Tips::default()),
+        None => (None, Vec::new(), Doubtful::default()),
     };
     lap(&mut report.seconds[1]);
     // Leaves that only the closure made are tested on the way, and the rare ones that fail ask
@@ -277,7 +259,7 @@ fn run(plan: &Plan<'_>, observer: &dyn Observer) -> Result<Outcome, Error> {
             }
         });
     }
-    let fragments = gather(plan, harvests, (doubtful, &tips), &mut report);
+    let fragments = gather(plan, harvests, doubtful, &mut report);
     lap(&mut report.seconds[2]);
     if plan.topology {
         report.proved_topology = Some(report.uncertified_leaves == 0);

@@ -18,7 +18,6 @@ use crate::classify::{Criterion, classify};
 use crate::convert::Plan;
 use crate::direction::common_direction;
 use crate::margin::Margin;
-use crate::nappe::{DoubleCone, Facing};
 use crate::settings::Reason;
 use crate::simplex::Simplex;
 use crate::walk::{Active, Frame};
@@ -63,8 +62,6 @@ pub(crate) struct DeviationRule {
     /// What may vanish in the neighbourhood at hand.
     near: Vec<Active>,
     control: Vec<DVec3>,
-    /// The cones whose apex may be in the last leaf.
-    apexes: ArrayVec<u32, CROWD>,
 }
 
 /// What is proved of a leaf.
@@ -74,8 +71,6 @@ pub(crate) struct Proved {
     pub distance: f64,
     /// Whether the true boundary is as near to the mesh.
     pub both_ways: bool,
-    /// Whether one surface is all that was near.
-    pub alone: bool,
 }
 
 impl DeviationRule {
@@ -95,7 +90,6 @@ impl DeviationRule {
             rate: margin.rate(simplex.level),
             tolerance: margin.radius / 3.0 * (1.0 - ROUNDING_SHARE),
         };
-        self.apexes.clear();
         let mut near = std::mem::take(&mut self.near);
         let result = self.test_near(plan, margin, simplex, frame, (&place, &mut near));
         self.near = near;
@@ -103,12 +97,6 @@ impl DeviationRule {
             self.test_planes(plan, simplex.level, frame, &place)
                 .ok_or(reason)
         })
-    }
-
-    /// The cones whose apex may be in the leaf that was tested last, as far as it was certified: its
-    /// mesh there may be in pieces or have a handle, though it is near enough.
-    pub(crate) fn apexes(&self) -> &[u32] {
-        &self.apexes
     }
 
     /// Planes are their own interpolants and are arranged exactly: where nothing else matters,
@@ -162,7 +150,6 @@ impl DeviationRule {
         Some(Proved {
             distance,
             both_ways: false,
-            alone: false,
         })
     }
 
@@ -175,36 +162,10 @@ impl DeviationRule {
         frame: &Frame,
         (place, near): (&Place, &mut Vec<Active>),
     ) -> Result<Proved, Reason> {
-        let is_cone = |a: &Active| plan.cones[a.primitive as usize].is_some();
-        let has_cones = frame.active.iter().any(is_cone);
-        // A nappe is the better surface. What is proved both ways takes the same view of a cone
-        // everywhere, what is proved one way is a leaf's own affair.
-        let view = View {
-            plan,
-            margin,
-            simplex,
-            frame,
-            place,
-            nappes: has_cones,
-        };
-        let result = self.test_view(&view, near);
-        if !has_cones {
-            return result;
-        }
-        let plain = View {
-            nappes: false,
-            ..view
-        };
-        result.or_else(|reason| self.test_view(&plain, near).map_err(|_| reason))
-    }
-
-    fn test_view(&mut self, view: &View<'_>, near: &mut Vec<Active>) -> Result<Proved, Reason> {
-        let (frame, place) = (view.frame, view.place);
         let crossing = frame.active.iter().filter(|a| a.value == Ternary::Unknown);
         near.clear();
         near.extend(crossing);
-        view.absorb_planes(near);
-        self.gather(view, near)?;
+        self.gather(plan, frame, near, place)?;
         let least = self.sheets.iter().map(Sheet::least_reach);
         let least = least.fold(0.0, f64::max);
         let mut gathered = self.active.len();
@@ -227,32 +188,23 @@ impl DeviationRule {
             };
             let around_it = frame.active.iter();
             let around_it =
-                around_it.filter(|a| is_near(a, view.simplex, frame, view.margin, place, &around));
+                around_it.filter(|a| is_near(a, simplex, frame, margin, place, &around));
             near.clear();
             near.extend(around_it);
-            view.absorb_planes(near);
-            if both_ways && near.iter().any(|a| view.is_double(a)) {
-                continue;
-            }
             // Sets of one size are the same: a smaller radius has no more around it.
             let result = if near.len() == gathered {
                 Ok(())
             } else {
-                let done = self.gather(view, near);
+                let done = self.gather(plan, frame, near, place);
                 gathered = done.map_or(usize::MAX, |()| self.active.len());
                 done
             };
-            let result = result.and_then(|()| self.try_around(view, &around));
+            let result = result.and_then(|()| self.try_around(plan, frame, (place, &around)));
             match result {
                 Ok(distance) => {
-                    let blunt = |s: &Sheet| s.nappe.is_some_and(|nappe| nappe.blunt);
-                    let found = self.active.iter().zip(&self.sheets);
-                    let apexes = found.filter(|(_, sheet)| blunt(sheet));
-                    self.apexes = apexes.map(|(active, _)| active.primitive).collect();
                     return Ok(Proved {
                         distance,
                         both_ways,
-                        alone: self.sheets.len() == 1,
                     });
                 }
                 Err(reason) => why = why.or(Some(reason)),
@@ -262,10 +214,13 @@ impl DeviationRule {
     }
 
     /// Looks at each of these primitives on its own.
-    fn gather(&mut self, view: &View<'_>, active: &[Active]) -> Result<(), Reason> {
-        let View {
-            plan, frame, place, ..
-        } = *view;
+    fn gather(
+        &mut self,
+        plan: &Plan<'_>,
+        frame: &Frame,
+        active: &[Active],
+        place: &Place,
+    ) -> Result<(), Reason> {
         self.sheets.clear();
         self.active.clear();
         self.active
@@ -273,13 +228,6 @@ impl DeviationRule {
             .map_err(|_| Reason::Crowded)?;
         for active in &self.active {
             let coefficients = frame.coefficients_of(active);
-            if let Some((cone, facing)) = view.nappe_of(active.primitive) {
-                let table = &plan.tables[1];
-                let of_p = (active, coefficients);
-                let sheet = cone.sheet(facing, of_p, table, view.simplex, place.tolerance);
-                self.sheets.push(sheet);
-                continue;
-            }
             let hessian = plan.hessians[active.primitive as usize].as_ref();
             let control = &mut self.control;
             let sheet = Sheet::new(&plan.tables, active, coefficients, place, hessian, control);
@@ -295,8 +243,13 @@ impl DeviationRule {
     }
 
     /// The rule for one neighbourhood.
-    fn try_around(&mut self, view: &View<'_>, around: &Around) -> Result<f64, Reason> {
-        let mut alone = self.sheets.iter().map(|s| s.reach(s.own_cosine(), around));
+    fn try_around(
+        &mut self,
+        plan: &Plan<'_>,
+        frame: &Frame,
+        (place, around): (&Place, &Around),
+    ) -> Result<f64, Reason> {
+        let mut alone = self.sheets.iter().map(|s| s.reach(1.0, around));
         let alone = alone.try_fold(0.0f64, |m, t| Some(m.max(t?)));
         let alone = alone.ok_or(Reason::Singular)?;
         if self.sheets.len() == 1 {
@@ -304,15 +257,20 @@ impl DeviationRule {
         }
         // Planes are their own interpolants: their arrangement is exact.
         let exact = self.sheets.iter().all(|s| s.degree == 1);
-        self.try_several(view, around)
+        self.try_several(plan, frame, (place, around))
             .or_else(|reason| exact.then_some(alone).ok_or(reason))
     }
 
-    fn try_several(&mut self, view: &View<'_>, around: &Around) -> Result<f64, Reason> {
+    fn try_several(
+        &mut self,
+        plan: &Plan<'_>,
+        frame: &Frame,
+        (place, around): (&Place, &Around),
+    ) -> Result<f64, Reason> {
         let mut senses = [1.0; CROWD];
         let mut two_sided = ArrayVec::<usize, MOST_TWO_SIDED>::new();
         for (at, active) in self.active.iter().enumerate() {
-            match single_sense(&view.frame.formula, active.primitive) {
+            match single_sense(&frame.formula, active.primitive) {
                 Some(sense) => senses[at] = sense,
                 None => two_sided.try_push(at).map_err(|_| Reason::Tangent)?,
             }
@@ -322,7 +280,7 @@ impl DeviationRule {
             for (bit, &at) in two_sided.iter().enumerate() {
                 senses[at] = if flips >> bit & 1 == 1 { -1.0 } else { 1.0 };
             }
-            let cosine = self.cosine(view, &senses, around)?;
+            let cosine = self.cosine(plan, frame, &senses, (place, around))?;
             for sheet in &self.sheets {
                 let cosine = (cosine * weight(sheet)).min(1.0);
                 let reach = sheet.reach(cosine, around);
@@ -335,13 +293,11 @@ impl DeviationRule {
     /// Least cosine, over all sets of sheets that may meet, of their common outward direction.
     fn cosine(
         &self,
-        view: &View<'_>,
+        plan: &Plan<'_>,
+        frame: &Frame,
         senses: &[f64; CROWD],
-        around: &Around,
+        (place, around): (&Place, &Around),
     ) -> Result<f64, Reason> {
-        let View {
-            plan, frame, place, ..
-        } = *view;
         let all: Set = (1 << self.sheets.len()) - 1;
         // Most often all have a common direction.
         if let Some(cosine) = self.cosine_of(all, senses, around) {
@@ -351,16 +307,12 @@ impl DeviationRule {
         for i in 0..self.sheets.len() {
             for j in 0..i {
                 let both = [i, j];
-                let polynomials =
-                    both.map(|at| view.polynomial(&self.active[at], &self.sheets[at]));
-                let [Some(a), Some(b)] = &polynomials else {
-                    continue;
-                };
+                let sheets = both.map(|at| &self.sheets[at]);
                 let coefficients = both.map(|at| frame.coefficients_of(&self.active[at]));
                 let hessians =
                     both.map(|at| plan.hessians[self.active[at].primitive as usize].as_ref());
                 if apart(
-                    [a, b],
+                    sheets,
                     coefficients,
                     both.map(|at| senses[at]),
                     (&plan.tables, hessians),
@@ -406,67 +358,6 @@ impl DeviationRule {
         });
         let least = cosines.fold(f64::INFINITY, f64::min);
         (least > 0.0).then_some(least)
-    }
-}
-
-/// A leaf, and how its cones are seen.
-#[derive(Clone, Copy)]
-struct View<'a> {
-    plan: &'a Plan<'a>,
-    margin: &'a Margin,
-    simplex: &'a Simplex,
-    frame: &'a Frame,
-    place: &'a Place,
-    /// As single nappes where they are, instead of polynomials.
-    nappes: bool,
-}
-
-impl<'a> View<'a> {
-    /// The nappe that a primitive is here.
-    fn nappe_of(&self, primitive: u32) -> Option<(&'a DoubleCone, Facing)> {
-        let cone = self.plan.cones[primitive as usize].as_ref();
-        let cone = cone.filter(|_| self.nappes)?;
-        let (formula, radius) = (&self.frame.formula, self.margin.radius);
-        let facing = cone.facing(primitive, formula, self.simplex, radius)?;
-        Some((cone, facing))
-    }
-
-    /// Whether a primitive is a cone that is seen as a polynomial.
-    fn is_double(&self, active: &Active) -> bool {
-        let primitive = active.primitive;
-        self.plan.cones[primitive as usize].is_some() && self.nappe_of(primitive).is_none()
-    }
-
-    /// Takes away planes that are there to choose nappes only.
-    fn absorb_planes(&self, near: &mut Vec<Active>) {
-        if !self.nappes {
-            return;
-        }
-        let mut absorbed = ArrayVec::<u32, CROWD>::new();
-        for active in &*near {
-            let plane = self.nappe_of(active.primitive);
-            let plane = plane.and_then(|(_, facing)| facing.absorbed);
-            if let Some(plane) = plane.filter(|_| !absorbed.is_full()) {
-                absorbed.push(plane);
-            }
-        }
-        near.retain(|active| !absorbed.contains(&active.primitive));
-    }
-
-    /// A sheet as its polynomial, if that has no other nappe around.
-    fn polynomial(&self, active: &Active, sheet: &Sheet) -> Option<Sheet> {
-        let Some(nappe) = sheet.nappe else {
-            return Some(*sheet);
-        };
-        if nappe.by_plane {
-            return None;
-        }
-        let hessian = self.plan.hessians[active.primitive as usize].as_ref();
-        let coefficients = self.frame.coefficients_of(active);
-        // A quadric needs no work space.
-        let control = &mut Vec::new();
-        let tables = &self.plan.tables;
-        Sheet::new(tables, active, coefficients, self.place, hessian, control)
     }
 }
 

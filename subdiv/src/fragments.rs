@@ -44,25 +44,6 @@ pub struct Fragments {
 }
 
 impl Fragments {
-    /// Drops vertices that no triangle has.
-    pub(crate) fn drop_lonely_vertices(&mut self) {
-        const NONE: u32 = u32::MAX;
-        let mut number = vec![NONE; self.positions.len()];
-        for vertex in self.triangles.iter().flat_map(|t| t.vertices) {
-            number[vertex as usize] = 0;
-        }
-        let mut used = number.iter().map(|&number| number != NONE);
-        self.positions.retain(|_| used.next() == Some(true));
-        let mut used = number.iter().map(|&number| number != NONE);
-        self.kinds.retain(|_| used.next() == Some(true));
-        for (new, number) in (0..).zip(number.iter_mut().filter(|number| **number != NONE)) {
-            *number = new;
-        }
-        for vertex in self.triangles.iter_mut().flat_map(|t| &mut t.vertices) {
-            *vertex = number[*vertex as usize];
-        }
-    }
-
     /// Bounds on the volume of a solid whose boundary is these triangles, each corner of which may
     /// be displaced by `rounding`, in model units.
     pub(crate) fn volume_interval(&self, rounding: f64) -> [f64; 2] {

@@ -10,7 +10,6 @@ use crate::mesh::{MeshBuilder, join};
 use crate::settings::{MAX_SPOTS, Observer, Report, Spot};
 use crate::simplex::Simplex;
 use crate::specks::{Doubtful, clear_specks};
-use crate::tips::{Tips, sharpen};
 use crate::topology::TopologyRule;
 use crate::trail::{Step, Trail};
 use crate::untangle::untangle;
@@ -102,7 +101,7 @@ pub(crate) fn extract(
 pub(crate) fn gather(
     plan: &Plan<'_>,
     harvests: Vec<Option<Harvest>>,
-    (mut doubtful, tips): (Doubtful, &Tips),
+    mut doubtful: Doubtful,
     report: &mut Report,
 ) -> Fragments {
     let mut meshes = Vec::with_capacity(harvests.len());
@@ -129,7 +128,6 @@ pub(crate) fn gather(
     let primitives = plan.solid.primitives.iter();
     let is_plane: Vec<bool> = primitives.map(|p| p.polynomial.degree() == 1).collect();
     report.crossing_leaves = untangle(&mut fragments, &tangles, &is_plane);
-    sharpen(&mut fragments, tips, &plan.cones, &domain);
     let cleared = clear_specks(&mut fragments, &doubtful, &domain);
     report.specks = cleared.pieces;
     report.crumbs = cleared.faces;

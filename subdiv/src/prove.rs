@@ -8,7 +8,6 @@ use crate::limits::Budget;
 use crate::settings::{MAX_SPOTS, Observer, Reason, Report, Spot};
 use crate::simplex::Simplex;
 use crate::specks::Doubtful;
-use crate::tips::Tips;
 use crate::topology::TopologyRule;
 use crate::trail::Trail;
 use crate::walk::{Frame, Pruning, Sector, Visitor};
@@ -29,8 +28,6 @@ pub(crate) struct Proof {
     pub(crate) trails: Vec<Trail>,
     /// Where nothing could be proved.
     pub(crate) doubtful: Doubtful,
-    /// Where cones end.
-    pub(crate) tips: Tips,
 }
 
 /// First traversal: where the rule wants to bisect.
@@ -62,7 +59,6 @@ pub(crate) fn prove(
     let mut trails = Vec::with_capacity(parts.len());
     let mut largest = 0.0f64;
     let mut doubtful = head.findings.doubtful;
-    let mut tips = head.findings.tips;
     report.visited += head.findings.visited;
     for part in parts {
         splits.extend(part.splits);
@@ -72,7 +68,6 @@ pub(crate) fn prove(
         report.uncertified_leaves += part.uncertified_leaves;
         report.one_way_leaves += part.one_way_leaves;
         doubtful.append(part.doubtful);
-        tips.append(part.tips);
         let room = MAX_SPOTS - report.uncertified.len();
         report
             .uncertified
@@ -89,7 +84,6 @@ pub(crate) fn prove(
         splits,
         trails,
         doubtful,
-        tips,
     }
 }
 
@@ -104,7 +98,6 @@ struct Findings {
     uncertified_leaves: u64,
     uncertified: Vec<Spot>,
     doubtful: Doubtful,
-    tips: Tips,
 }
 
 /// Applies the rule to every simplex on the way down.
@@ -150,7 +143,6 @@ impl<'a> Prover<'a> {
         verdict.map(|()| Proved {
             distance: 0.0,
             both_ways: true,
-            alone: false,
         })
     }
 
@@ -165,16 +157,8 @@ impl<'a> Prover<'a> {
                 let largest = &mut self.findings.largest_deviation;
                 *largest = largest.max(proved.distance);
                 self.findings.one_way_leaves += u64::from(!proved.both_ways);
-                for &cone in self.rule.apexes() {
-                    self.findings.doubtful.push(simplex);
-                    let reach = self.plan.cones[cone as usize].as_ref();
-                    let reach = reach.filter(|_| proved.alone).map(|c| c.reach_of(simplex));
-                    self.findings
-                        .tips
-                        .push(cone, reach.unwrap_or(f64::INFINITY));
-                }
             }
-            Err(_) if simplex.level < self.plan.deepest_level(frame) => {
+            Err(_) if simplex.level < self.plan.max_level => {
                 self.findings.splits.push(simplex.midpoint());
                 return true;
             }

@@ -15,6 +15,9 @@ use rustc_hash::FxHashSet;
 /// tolerance may be coarse.
 const CELLS: f64 = 2.5;
 
+/// No number.
+const NONE: u32 = u32::MAX;
+
 /// The cells that prove nothing, by their midpoints, in the domain's own units.
 #[derive(Debug, Default)]
 pub(crate) struct Doubtful {
@@ -83,8 +86,25 @@ fn drop_pieces(fragments: &mut Fragments, near: &Near<'_>) -> u64 {
     }
     let mut at = piece.iter();
     (fragments.triangles).retain(|_| at.next().is_some_and(|piece| !specks.contains(piece)));
-    fragments.drop_lonely_vertices();
+    drop_lonely_vertices(fragments);
     specks.len() as u64
+}
+
+fn drop_lonely_vertices(fragments: &mut Fragments) {
+    let mut number = vec![NONE; fragments.positions.len()];
+    for vertex in fragments.triangles.iter().flat_map(|t| t.vertices) {
+        number[vertex as usize] = 0;
+    }
+    let mut used = number.iter().map(|&number| number != NONE);
+    fragments.positions.retain(|_| used.next() == Some(true));
+    let mut used = number.iter().map(|&number| number != NONE);
+    fragments.kinds.retain(|_| used.next() == Some(true));
+    for (new, number) in (0..).zip(number.iter_mut().filter(|number| **number != NONE)) {
+        *number = new;
+    }
+    for vertex in fragments.triangles.iter_mut().flat_map(|t| &mut t.vertices) {
+        *vertex = number[*vertex as usize];
+    }
 }
 
 /// Gives each small face to the neighbour with which it has most edges in common.
