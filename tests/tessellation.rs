@@ -269,8 +269,17 @@ fn a_mean_fit_keeps_volumes_planes_and_the_tolerance_with_fewer_triangles() {
         let solid = Solid::build(&stages::read(source), None).unwrap();
         for part in [0.01, 0.002] {
             let tolerance = part * side(&solid);
-            let [(plain, few, _), (mean, fewer, _)] = [Fit::Inscribed, Fit::Mean]
-                .map(|fit| fitted(&solid, tolerance, fit).expect(source));
+            let (coarse, _) = subdivided(&solid, Rule::Topology { finest: tolerance });
+            let [(plain, few), (mean, fewer)] = [Fit::Inscribed, Fit::Mean].map(|fit| {
+                let demand = Demand {
+                    tolerance,
+                    fit,
+                    if_troubled: IfTroubled::Refine,
+                    // What the facets themselves do: a proof may ask for more of some.
+                    proof: Proof::Nothing,
+                };
+                like(&coarse, &solid, demand).expect(source)
+            });
             assert!(
                 fewer.facets_after <= few.facets_after,
                 "{source}: {fewer:?}"
