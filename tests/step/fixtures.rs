@@ -25,8 +25,10 @@ const SLOW: [&str; 8] = [
     "S5_ring128",
 ];
 /// Files with solids that have no true form.
-const FACETED: [&str; 6] = [
+const FACETED: [&str; 7] = [
     "S7_heart",
+    // A face touches itself along an edge since strips are merged into their neighbours.
+    "allmodules",
     "animation",
     "example017",
     "linear_extrude_invisible-tests",
